@@ -1,0 +1,51 @@
+# Berth: every target sets up what it needs first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.PHONY: demo test setup setup-dev lint schemas lock bench clean
+
+demo: setup  ## the main job: a simulated robot learns to dock, from camera images
+	$(BIN)/berth run launch/sim.toml
+
+test: setup-dev lint  ## lint, types and tests
+	$(BIN)/pytest
+
+setup: $(VENV)/lab.stamp  ## .venv with what the demo needs
+setup-dev: $(VENV)/dev.stamp
+
+$(VENV)/lab.stamp: requirements/lab.lock pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements/build.lock
+	$(BIN)/python -m pip install --quiet --require-hashes -r $<
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+$(VENV)/dev.stamp: requirements/dev.lock $(VENV)/lab.stamp
+	$(BIN)/python -m pip install --quiet --require-hashes -r $<
+	touch $@
+
+lint: setup-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+schemas: setup-dev  ## regenerate schemas/*_pb2.py
+	$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. schemas/*.proto
+
+lock:  ## resolve anew; uv is needed only here
+	test -x $(VENV)/uv/bin/uv || { $(PYTHON) -m venv $(VENV)/uv && $(VENV)/uv/bin/pip install --quiet uv; }
+	for role in robot lab dev; do \
+	  extra=$$([ $$role = robot ] || echo "--extra $$role"); \
+	  $(VENV)/uv/bin/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	    --no-emit-index-url --no-header pyproject.toml $$extra -o requirements/$$role.lock || exit 1; \
+	done
+	echo 'setuptools==80.9.0' | $(VENV)/uv/bin/uv pip compile --quiet --universal --generate-hashes \
+	  --no-emit-index-url --no-header - -o requirements/build.lock
+
+bench: setup-dev  ## every number we claim, with its floor
+	$(BIN)/python -m benchmarks
+
+clean:
+	rm -rf $(VENV) build *.egg-info

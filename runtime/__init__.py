@@ -1,0 +1,1 @@
+"""Shells, launch files, supervision and logs. Names no component: the launch file does."""

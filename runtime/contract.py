@@ -1,0 +1,111 @@
+"""What a component is: ports, events, outputs. Standard library only.
+
+A component is a fold over events (`handle`). Time, randomness and configuration come in as arguments, so one
+class runs live over the bus, in lockstep in one process, and over a recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
+
+TICK = "tick"
+"""Name of the input port whose events are released by the shell's clock."""
+STOP = "stop"
+"""The last event of a run; every component gets it, none declares it."""
+STALL = "stall"
+"""In lockstep on the bus: a frame was not answered within `stall_s`. Only for a component with `paces = True`."""
+
+
+class Message(Protocol):
+    """A protobuf message, as far as a shell needs to know it."""
+
+    DESCRIPTOR: ClassVar[Any]
+
+    def SerializeToString(self, *, deterministic: bool = ...) -> bytes: ...  # noqa: D102, N802
+    @classmethod
+    def FromString(cls, s: bytes) -> Message: ...  # noqa: D102, N802
+
+
+class Kind(Enum):
+    """What a port carries; `runtime.qos` gives each kind its priority and its behaviour under congestion."""
+
+    COMMAND = "command"
+    STATE = "state"
+    IMAGE = "image"
+    EVENT = "event"
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """One named input or output of a component.
+
+    Input and output ports of one schema can be wired together by a launch file.
+    """
+
+    schema: type[Any]
+    """Generated protobuf class."""
+    kind: Kind = Kind.STATE
+    hz: float | None = None
+    """Expected rate, for the reader and `berth topic hz`; None = on occasion."""
+    queue: int = 64
+    """Input: samples the inbox holds before it refuses more. 1 = only the latest (a replaced one is *skipped*)."""
+    triggers: bool = True
+    """Input: may cause outputs at once. False = only remembered, so that it closes no cycle."""
+    optional: bool = False
+    """Input: may stay unwired."""
+    per_frame: bool = False
+    """On the control path. Output: answers every frame exactly once. Input: never skipped in lockstep."""
+    delayed: bool = False
+    """Output: published at a later time than the input that caused it (the world's next frame)."""
+    reserved: bool = False
+    """Output: for evaluation only (ground truth); no component may be wired to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """An input port named `tick`: the shell's clock calls, at most once a period; late ticks coalesce."""
+
+    hz: float
+
+
+class Event(NamedTuple):
+    """One call of `handle`."""
+
+    time_ns: int
+    """Session time at hand-over; never decreases, never before `capture_ns`."""
+    port: str
+    """Input port, or `tick`, `stop`, `stall`."""
+    message: Any = None
+    """Decoded message of the port's schema; None for tick, stop and stall."""
+    capture_ns: int = 0
+    """When the light or the encoder was read that this message goes back to, session time."""
+    source_run: int = 0
+    """Run id of the publisher; a restart has a new one."""
+    sequence: int = 0
+    """Of the publisher on this port, from 0."""
+
+
+class Output(NamedTuple):
+    """A message to publish. The shell stamps the capture time of the event that caused it unless given."""
+
+    port: str
+    message: Any
+    capture_ns: int | None = None
+
+
+@runtime_checkable
+class Component(Protocol):
+    """What a shell runs. `save` and `load` exist where state must outlive the process (pilot, learner)."""
+
+    Params: ClassVar[type[Any]]
+    inputs: ClassVar[Mapping[str, Port | Tick]]
+    outputs: ClassVar[Mapping[str, Port]]
+
+    def handle(self, event: Event) -> tuple[Output, ...]: ...  # noqa: D102
+
+
+class ComponentError(Exception):
+    """A component can not go on; the shell ends its process with this one line."""

@@ -1,0 +1,76 @@
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class Trial(_message.Message):
+    __slots__ = ("phase", "mode", "number", "outcome", "ended", "controller", "action", "policy_version", "place", "start", "goal_reached", "began_ns")
+    class Phase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        TRAIN: _ClassVar[Trial.Phase]
+        EVALUATE: _ClassVar[Trial.Phase]
+        FINISHED: _ClassVar[Trial.Phase]
+    TRAIN: Trial.Phase
+    EVALUATE: Trial.Phase
+    FINISHED: Trial.Phase
+    class Mode(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        WAIT: _ClassVar[Trial.Mode]
+        APPROACH: _ClassVar[Trial.Mode]
+        SERVO: _ClassVar[Trial.Mode]
+        GRASP: _ClassVar[Trial.Mode]
+        REVERSE: _ClassVar[Trial.Mode]
+        PLACE: _ClassVar[Trial.Mode]
+    WAIT: Trial.Mode
+    APPROACH: Trial.Mode
+    SERVO: Trial.Mode
+    GRASP: Trial.Mode
+    REVERSE: Trial.Mode
+    PLACE: Trial.Mode
+    class Outcome(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        NONE: _ClassVar[Trial.Outcome]
+        REACHED: _ClassVar[Trial.Outcome]
+        SINK: _ClassVar[Trial.Outcome]
+        COLLIDED: _ClassVar[Trial.Outcome]
+        LOST: _ClassVar[Trial.Outcome]
+        TIMED_OUT: _ClassVar[Trial.Outcome]
+        ARRIVED: _ClassVar[Trial.Outcome]
+        PICKED: _ClassVar[Trial.Outcome]
+        MISSED: _ClassVar[Trial.Outcome]
+    NONE: Trial.Outcome
+    REACHED: Trial.Outcome
+    SINK: Trial.Outcome
+    COLLIDED: Trial.Outcome
+    LOST: Trial.Outcome
+    TIMED_OUT: Trial.Outcome
+    ARRIVED: Trial.Outcome
+    PICKED: Trial.Outcome
+    MISSED: Trial.Outcome
+    PHASE_FIELD_NUMBER: _ClassVar[int]
+    MODE_FIELD_NUMBER: _ClassVar[int]
+    NUMBER_FIELD_NUMBER: _ClassVar[int]
+    OUTCOME_FIELD_NUMBER: _ClassVar[int]
+    ENDED_FIELD_NUMBER: _ClassVar[int]
+    CONTROLLER_FIELD_NUMBER: _ClassVar[int]
+    ACTION_FIELD_NUMBER: _ClassVar[int]
+    POLICY_VERSION_FIELD_NUMBER: _ClassVar[int]
+    PLACE_FIELD_NUMBER: _ClassVar[int]
+    START_FIELD_NUMBER: _ClassVar[int]
+    GOAL_REACHED_FIELD_NUMBER: _ClassVar[int]
+    BEGAN_NS_FIELD_NUMBER: _ClassVar[int]
+    phase: Trial.Phase
+    mode: Trial.Mode
+    number: int
+    outcome: Trial.Outcome
+    ended: int
+    controller: str
+    action: int
+    policy_version: int
+    place: bool
+    start: int
+    goal_reached: bool
+    began_ns: int
+    def __init__(self, phase: _Optional[_Union[Trial.Phase, str]] = ..., mode: _Optional[_Union[Trial.Mode, str]] = ..., number: _Optional[int] = ..., outcome: _Optional[_Union[Trial.Outcome, str]] = ..., ended: _Optional[int] = ..., controller: _Optional[str] = ..., action: _Optional[int] = ..., policy_version: _Optional[int] = ..., place: _Optional[bool] = ..., start: _Optional[int] = ..., goal_reached: _Optional[bool] = ..., began_ns: _Optional[int] = ...) -> None: ...
