@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
-TICK = "tick"
-"""Name of the input port whose events are released by the shell's clock."""
+TICK, GONE, STALL = "tick", "gone", "stall"
+"""Names of the inputs that the shell itself feeds."""
 STOP = "stop"
 """The last event of a run; every component gets it, none declares it."""
-STALL = "stall"
-"""In lockstep on the bus: a frame was not answered within `stall_s`. Only for a component with `paces = True`."""
 
 
 class Message(Protocol):
@@ -52,12 +50,12 @@ class Port:
     """Expected rate, for the reader and `berth topic hz`; None = on occasion."""
     queue: int = 64
     """Input: samples the inbox holds before it refuses more. 1 = only the latest (a replaced one is *skipped*)."""
-    triggers: bool = True
-    """Input: may cause outputs at once. False = only remembered, so that it closes no cycle."""
     optional: bool = False
     """Input: may stay unwired."""
     per_frame: bool = False
     """On the control path. Output: answers every frame exactly once. Input: never skipped in lockstep."""
+    on: tuple[str, ...] = ()
+    """Output: the input ports whose messages can cause it at once. The others are only remembered, close no cycle."""
     delayed: bool = False
     """Output: published at a later time than the input that caused it (the world's next frame)."""
     reserved: bool = False
@@ -66,9 +64,22 @@ class Port:
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """An input port named `tick`: the shell's clock calls, at most once a period; late ticks coalesce."""
+    """An input named `tick`: the shell's clock calls, at most once a period; late ticks coalesce."""
 
     hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class Peers:
+    """An input named `gone`: a component of the launch has died; the event's message is its name (text)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stall:
+    """An input named `stall`: in lockstep on the bus nothing came for the session's `stall_s` of wall time."""
+
+
+Input = Port | Tick | Peers | Stall
 
 
 class Event(NamedTuple):
@@ -77,9 +88,9 @@ class Event(NamedTuple):
     time_ns: int
     """Session time at hand-over; never decreases, never before `capture_ns`."""
     port: str
-    """Input port, or `tick`, `stop`, `stall`."""
+    """Input port, or `tick`, `gone`, `stall`, `stop`."""
     message: Any = None
-    """Decoded message of the port's schema; None for tick, stop and stall."""
+    """Decoded message of the port's schema; the name (text) for gone; None for tick, stall and stop."""
     capture_ns: int = 0
     """When the light or the encoder was read that this message goes back to, session time."""
     source_run: int = 0
@@ -101,7 +112,7 @@ class Component(Protocol):
     """What a shell runs. `save` and `load` exist where state must outlive the process (pilot, learner)."""
 
     Params: ClassVar[type[Any]]
-    inputs: ClassVar[Mapping[str, Port | Tick]]
+    inputs: ClassVar[Mapping[str, Input]]
     outputs: ClassVar[Mapping[str, Port]]
 
     def handle(self, event: Event) -> tuple[Output, ...]: ...  # noqa: D102

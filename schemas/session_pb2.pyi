@@ -48,6 +48,22 @@ class RecorderAck(_message.Message):
     lost: int
     def __init__(self, messages: _Optional[int] = ..., lost: _Optional[int] = ...) -> None: ...
 
+class SessionEnd(_message.Message):
+    __slots__ = ("reason",)
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    reason: str
+    def __init__(self, reason: _Optional[str] = ...) -> None: ...
+
+class Snapshot(_message.Message):
+    __slots__ = ("version", "table_sha256", "state")
+    VERSION_FIELD_NUMBER: _ClassVar[int]
+    TABLE_SHA256_FIELD_NUMBER: _ClassVar[int]
+    STATE_FIELD_NUMBER: _ClassVar[int]
+    version: int
+    table_sha256: bytes
+    state: bytes
+    def __init__(self, version: _Optional[int] = ..., table_sha256: _Optional[bytes] = ..., state: _Optional[bytes] = ...) -> None: ...
+
 class Gap(_message.Message):
     __slots__ = ("key", "run", "first_missing", "count")
     KEY_FIELD_NUMBER: _ClassVar[int]

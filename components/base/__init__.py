@@ -1,0 +1,1 @@
+"""The robot base: drive, odometry, gripper, safety."""

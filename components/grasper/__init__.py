@@ -1,0 +1,1 @@
+"""The pick-up after docking: lower until the beams see the object, close, lift."""

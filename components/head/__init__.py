@@ -1,0 +1,1 @@
+"""Pan-tilt unit driver."""

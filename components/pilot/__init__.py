@@ -1,0 +1,1 @@
+"""Policies, teacher, trials, reverse: turns percepts into drive commands."""

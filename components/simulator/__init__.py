@@ -1,0 +1,1 @@
+"""The world: plant, camera image, head, gripper, disturbances."""

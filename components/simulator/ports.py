@@ -1,0 +1,36 @@
+"""The world: plant, camera image, head, gripper, disturbances: parameters and ports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from runtime.contract import Input, Kind, Port, Stall, Tick
+from schemas.drive_pb2 import BaseCommand, BaseState
+from schemas.head_pb2 import HeadCommand, HeadState
+from schemas.image_pb2 import CompressedImage
+from schemas.session_pb2 import RecorderAck
+from schemas.trial_pb2 import Trial
+from schemas.truth_pb2 import Truth
+
+
+@dataclass(frozen=True)
+class Params:
+    """Parameters of this component."""
+
+
+INPUTS: Mapping[str, Input] = {
+    "drive": Port(BaseCommand, Kind.COMMAND, hz=8, per_frame=True),
+    "aim": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True),
+    "trial": Port(Trial, Kind.EVENT, hz=8, per_frame=True),
+    "ack": Port(RecorderAck, Kind.EVENT, hz=8, optional=True),
+    "tick": Tick(hz=64),
+    "stall": Stall(),
+}
+_STEP = ("drive", "aim", "trial", "ack", "tick", "stall")
+OUTPUTS: Mapping[str, Port] = {
+    "image": Port(CompressedImage, Kind.IMAGE, hz=8, per_frame=True, delayed=True, on=_STEP),
+    "head": Port(HeadState, Kind.STATE, hz=8, per_frame=True, delayed=True, on=_STEP),
+    "base": Port(BaseState, Kind.STATE, hz=8, per_frame=True, delayed=True, on=_STEP),
+    "truth": Port(Truth, Kind.STATE, hz=8, per_frame=True, delayed=True, reserved=True, on=_STEP),
+}

@@ -1,0 +1,1 @@
+"""Keeps the object in the image centre; publishes the percept."""

@@ -1,0 +1,1 @@
+"""Object centroid and table-edge slope from one image."""
