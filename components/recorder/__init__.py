@@ -1,0 +1,1 @@
+"""Everything on the bus into one self-explaining MCAP file."""

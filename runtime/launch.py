@@ -1,0 +1,311 @@
+"""Launch files: one whole system in one flat TOML table, checked before anything starts."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import hashlib
+import importlib
+import json
+import re
+import tomllib
+import typing
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any, cast
+
+from runtime.params import ConfigurationError, build
+
+_REALM = re.compile(r"[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+RESTARTS = ("never", "on-failure", "always")
+_SESSION = {"clock": "lockstep", "seed": 1, "stall_s": 10.0, "end": "", "trial": "", "truth": ""}
+_COMPONENT = ("run", "host", "restart", "restart_limit", "device", "inputs", "outputs", "params")
+
+
+@dataclass(frozen=True)
+class ComponentSpec:
+    """One process, resolved: everything that its shell needs to run it."""
+
+    name: str
+    run: str
+    """Package of the component, e.g. `components.tracker`."""
+    host: str
+    restart: str
+    restart_limit: int
+    device: Mapping[str, Any]
+    inputs: Mapping[str, str]
+    """Input port -> key below the realm, e.g. `vision/view`."""
+    outputs: Mapping[str, str]
+    """Every output port -> key below the realm; `component/port` unless the launch file gives an alias."""
+    params: Mapping[str, Any]
+    """Plain values of every parameter, task and clock included."""
+    seed: int
+    tap: bool
+    """A tap gets the whole bus instead of ports (recorder, viewer)."""
+
+
+@dataclass(frozen=True)
+class System:
+    """A launch file, checked and resolved."""
+
+    file: str
+    realm: str
+    clock: str
+    """`lockstep` or `real`."""
+    pace: float | None
+    """Session seconds per wall second; None = as fast as possible."""
+    seed: int
+    stall_s: float
+    end: str
+    trial: str
+    truth: str
+    components: tuple[ComponentSpec, ...]
+    text: str
+    """The resolved launch file, for the session's log."""
+
+    def component(self, name: str) -> ComponentSpec:
+        """The component of this name."""
+        for spec in self.components:
+            if spec.name == name:
+                return spec
+        raise ConfigurationError(
+            f"{self.file}: component {name} is unknown; known are {', '.join(c.name for c in self.components)}"
+        )
+
+    def to_json(self) -> str:
+        """Text from which `from_json` makes the same system."""
+        return json.dumps(dataclasses.asdict(self), default=_plain, sort_keys=True)
+
+    @staticmethod
+    def from_json(text: str) -> System:
+        """Inverse of `to_json`; for text of our own supervisor."""
+        table = json.loads(text, object_hook=_bytes)
+        table["components"] = tuple(ComponentSpec(**spec) for spec in table["components"])
+        return System(**table)
+
+
+def ports_of(run: str, where: str = "run") -> ModuleType:
+    """Module that declares Params, INPUTS and OUTPUTS of a component.
+
+    Raises:
+        ConfigurationError: there is no such component.
+    """
+    try:
+        return importlib.import_module(run + ".ports")
+    except ModuleNotFoundError as missing:
+        if missing.name is not None and not (run + ".ports").startswith(missing.name):
+            raise
+        raise ConfigurationError(f"{where} must name a package with a ports.py; got {run!r}") from None
+
+
+def class_of(run: str) -> type[Any]:
+    """The component's class: the CamelCase of its folder's name."""
+    module = importlib.import_module(run + ".component")
+    name = "".join(part.capitalize() for part in run.rsplit(".", 1)[-1].split("_"))
+    return cast("type[Any]", getattr(module, name))
+
+
+def params_of(spec: ComponentSpec, file: str = "") -> Any:
+    """The component's parameter dataclass, built from its resolved values."""
+    return build(ports_of(spec.run).Params, spec.params, f"{file}: {spec.name}.params")
+
+
+def load(file: str | Path, overrides: Iterable[str] = (), *, clock: str = "", seed: int | None = None) -> System:
+    """Read, check and resolve a launch file.
+
+    Args:
+        file: path of the TOML file.
+        overrides: `component.param=value`, `task.key=value` or `session.key=value`; the value as in TOML, text may
+            stand without quotes.
+        clock: as on the command line; empty = as in the file.
+        seed: as on the command line; None = as in the file.
+
+    Raises:
+        ConfigurationError: one line that names file, key, value and rule.
+    """
+    table = _parsed(Path(file))
+    for override in overrides:
+        _override(table, override)
+    session = dict(_table(table, "session", str(file), _SESSION))
+    if clock:
+        session["clock"] = clock
+    if seed is not None:
+        session["seed"] = seed
+    return _resolved(table, session, str(file))
+
+
+def _parsed(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigurationError(f"{path}: can not be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"{path}: is not TOML: {error}") from None
+
+
+def _override(table: dict[str, Any], override: str) -> None:
+    key, sign, text = override.partition("=")
+    owner, _, name = key.partition(".")
+    if not sign or not name:
+        raise ConfigurationError(f"--set {override}: must be COMPONENT.PARAM=VALUE")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text
+    if owner in {"session", "task"}:
+        table.setdefault(owner, {})[name] = value
+        return
+    components = table.get("component", {})
+    if owner not in components:
+        raise ConfigurationError(f"--set {override}: component {owner} is unknown; known are {', '.join(components)}")
+    components[owner].setdefault("params", {})[name] = value
+
+
+def _table(table: Mapping[str, Any], key: str, where: str, defaults: Mapping[str, Any]) -> Mapping[str, Any]:
+    given = table.get(key, {})
+    if not isinstance(given, dict):
+        raise ConfigurationError(f"{where}: {key} must be a table; got {given!r}")
+    for name in given:
+        if name not in defaults:
+            raise ConfigurationError(f"{where}: {key}.{name} is unknown; known are {', '.join(defaults)}")
+    return {**defaults, **given}
+
+
+def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -> System:
+    from runtime.wiring import check_wiring  # noqa: PLC0415  (wiring names this module's types)
+
+    for key in table:
+        if key not in {"realm", "session", "task", "component"}:
+            raise ConfigurationError(f"{file}: {key} is unknown; known are realm, session, task, component")
+    realm = table.get("realm")
+    if not isinstance(realm, str) or not _REALM.fullmatch(realm):
+        raise ConfigurationError(f"{file}: realm must be words joined by /; got {realm!r}")
+    clock, pace = _clock(session["clock"], file)
+    seed, stall_s = session["seed"], session["stall_s"]
+    if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
+        raise ConfigurationError(f"{file}: session.seed must be a whole number >= 0; got {seed!r}")
+    if not isinstance(stall_s, int | float) or isinstance(stall_s, bool) or not 0 < stall_s < float("inf"):
+        raise ConfigurationError(f"{file}: session.stall_s must be > 0; got {stall_s!r}")
+    components = table.get("component", {})
+    if not isinstance(components, dict) or not components:
+        raise ConfigurationError(f"{file}: component must be a table of at least one component")
+    specs = tuple(_component(name, entry, _shared(table, clock), seed, file) for name, entry in components.items())
+    keys = {key: str(session[key]) for key in ("end", "trial", "truth")}
+    system = System(file, realm, clock, pace, seed, float(stall_s), **keys, components=specs, text="")
+    check_wiring(system)
+    return dataclasses.replace(system, text=_text(system, table))
+
+
+def _clock(value: object, file: str) -> tuple[str, float | None]:
+    if value == "lockstep":
+        return "lockstep", None
+    if value == "real":
+        return "real", 1.0
+    try:
+        pace = float(cast("Any", value))
+    except (TypeError, ValueError):
+        pace = 0.0
+    if not 0 < pace < float("inf"):
+        raise ConfigurationError(f"{file}: session.clock must be lockstep, real or a factor > 0; got {value!r}")
+    return "real", pace
+
+
+def _shared(table: Mapping[str, Any], clock: str) -> dict[str, Any]:
+    return {"task": table.get("task", {}), "clock": clock}
+
+
+def _component(name: str, entry: Any, shared: Mapping[str, Any], seed: int, file: str) -> ComponentSpec:
+    where = f"{file}: {name}"
+    if not _NAME.fullmatch(name):
+        raise ConfigurationError(f"{where} must be a lower-case word")
+    if not isinstance(entry, dict):
+        raise ConfigurationError(f"{where} must be a table; got {entry!r}")
+    for key in entry:
+        if key not in _COMPONENT:
+            raise ConfigurationError(f"{where}.{key} is unknown; known are {', '.join(_COMPONENT)}")
+    run = _string(entry, "run", "", where)
+    ports = ports_of(run, f"{where}.run")
+    restart = _string(entry, "restart", "never", where)
+    if restart not in RESTARTS:
+        raise ConfigurationError(f"{where}.restart must be one of {', '.join(RESTARTS)}; got {restart!r}")
+    limit = entry.get("restart_limit", 3)
+    if not isinstance(limit, int) or isinstance(limit, bool) or limit < 0:
+        raise ConfigurationError(f"{where}.restart_limit must be a whole number >= 0; got {limit!r}")
+    aliases = _strings(entry, "outputs", where)
+    for port in aliases:
+        if port not in ports.OUTPUTS:
+            raise ConfigurationError(f"{where}.outputs.{port} is unknown; known are {', '.join(ports.OUTPUTS)}")
+    return ComponentSpec(
+        name=name,
+        run=run,
+        host=_string(entry, "host", "robot", where),
+        restart=restart,
+        restart_limit=limit,
+        device=_mapping(entry, "device", where),
+        inputs=_strings(entry, "inputs", where),
+        outputs={port: aliases.get(port, f"{name}/{port}") for port in ports.OUTPUTS},
+        params=_params(ports.Params, _mapping(entry, "params", where), shared, where),
+        seed=int.from_bytes(hashlib.sha256(f"{seed}/{name}".encode()).digest()[:4], "little"),
+        tap=bool(getattr(ports, "TAP", False)),
+    )
+
+
+def _params(kind: type[Any], given: Mapping[str, Any], shared: Mapping[str, Any], where: str) -> dict[str, Any]:
+    hints = typing.get_type_hints(kind)
+    values = {key: value for key, value in shared.items() if key in hints}
+    values.update(given)
+    for key, value in values.items():
+        if hints.get(key) is bytes and isinstance(value, str):
+            values[key] = _content(value, f"{where}.params.{key}")
+    return dataclasses.asdict(build(kind, values, f"{where}.params"))
+
+
+def _content(path: str, where: str) -> bytes:
+    """A parameter of type bytes is given as the path of a file; the session then holds the file itself."""
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise ConfigurationError(f"{where} must be a readable file; got {path!r}: {error.strerror}") from None
+
+
+def _string(entry: Mapping[str, Any], key: str, default: str, where: str) -> str:
+    value = entry.get(key, default)
+    if not isinstance(value, str) or not value:
+        raise ConfigurationError(f"{where}.{key} must be a text; got {value!r}")
+    return value
+
+
+def _mapping(entry: Mapping[str, Any], key: str, where: str) -> dict[str, Any]:
+    value = entry.get(key, {})
+    if not isinstance(value, dict):
+        raise ConfigurationError(f"{where}.{key} must be a table; got {value!r}")
+    return value
+
+
+def _strings(entry: Mapping[str, Any], key: str, where: str) -> dict[str, str]:
+    value = _mapping(entry, key, where)
+    for name, text in value.items():
+        if not isinstance(text, str) or text.count("/") != 1:
+            raise ConfigurationError(f'{where}.{key}.{name} must be "component/port"; got {text!r}')
+    return value
+
+
+def _text(system: System, table: Mapping[str, Any]) -> str:
+    """The resolved system as JSON, every parameter with its value: what the session's log keeps."""
+    plain = json.loads(system.to_json())
+    plain["task"] = table.get("task", {})
+    del plain["text"]
+    return json.dumps(plain, indent=1, sort_keys=True)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, bytes):
+        return {"base64": base64.b64encode(value).decode()}
+    raise TypeError(f"{value!r} has no JSON form")
+
+
+def _bytes(table: dict[str, Any]) -> Any:
+    return base64.b64decode(table["base64"]) if set(table) == {"base64"} else table

@@ -1,0 +1,134 @@
+"""The graph of a system: who publishes which key, who reads it, and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from runtime.contract import Port
+from runtime.launch import ComponentSpec, System, ports_of
+from runtime.params import ConfigurationError
+
+
+class Wire(NamedTuple):
+    """One input port and the output port that feeds it."""
+
+    source: str
+    output: str
+    key: str
+    target: str
+    input: str
+
+
+def publishers(system: System) -> dict[str, tuple[str, str]]:
+    """Key below the realm -> (component, output port).
+
+    Raises:
+        ConfigurationError: two components on one key.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    for spec in system.components:
+        for port, key in spec.outputs.items():
+            if key in found:
+                raise ConfigurationError(
+                    f"{system.file}: {spec.name}.outputs.{port} must not share a key; {key!r} is published by "
+                    f"{found[key][0]} already"
+                )
+            found[key] = (spec.name, port)
+    return found
+
+
+def wires(system: System) -> list[Wire]:
+    """Every wire, in launch order."""
+    sources = publishers(system)
+    return [
+        Wire(*sources[key], key, spec.name, port)
+        for spec in system.components
+        for port, key in spec.inputs.items()
+        if key in sources
+    ]
+
+
+def check_wiring(system: System) -> None:
+    """Refuse a system that can not work.
+
+    Raises:
+        ConfigurationError: unknown port, an input wired to nothing, an unwired input, schemas that differ, a wire to
+            ground truth, a cycle without delay, camera and base on different hosts.
+    """
+    sources = publishers(system)
+    for spec in system.components:
+        _check_inputs(system, spec, sources)
+    _check_session_keys(system, sources)
+    _check_cycles(system)
+
+
+def _check_inputs(system: System, spec: ComponentSpec, sources: dict[str, tuple[str, str]]) -> None:
+    ports = ports_of(spec.run).INPUTS
+    where = f"{system.file}: {spec.name}.inputs"
+    wired = {name: port for name, port in ports.items() if isinstance(port, Port)}
+    for name, key in spec.inputs.items():
+        if name not in wired:
+            raise ConfigurationError(f"{where}.{name} is unknown; known are {', '.join(wired)}")
+        if key not in sources:
+            raise ConfigurationError(f"{where}.{name} must be published by some component; got {key!r}")
+        source = _output(system, *sources[key])
+        if source.reserved:
+            raise ConfigurationError(f"{where}.{name} must not be {key!r}: ground truth is for evaluation only")
+        if source.schema is not wired[name].schema:
+            raise ConfigurationError(
+                f"{where}.{name} must be a {wired[name].schema.DESCRIPTOR.full_name}; {key!r} is a "
+                f"{source.schema.DESCRIPTOR.full_name}"
+            )
+    for name, port in wired.items():
+        if not port.optional and name not in spec.inputs:
+            raise ConfigurationError(f"{where}.{name} is missing; it must be the key of a {port.schema.__name__}")
+
+
+def _output(system: System, component: str, port: str) -> Port:
+    declared: Port = ports_of(system.component(component).run).OUTPUTS[port]
+    return declared
+
+
+def _check_session_keys(system: System, sources: dict[str, tuple[str, str]]) -> None:
+    for name in ("end", "trial", "truth"):
+        key = getattr(system, name)
+        if key and key not in sources:
+            raise ConfigurationError(f"{system.file}: session.{name} must be published by some component; got {key!r}")
+
+
+def _check_cycles(system: System) -> None:
+    """Depth-first search over (component, output port): an output follows from the inputs that it is `on`."""
+    by_input = {(wire.target, wire.input): (wire.source, wire.output) for wire in wires(system)}
+    done: set[tuple[str, str]] = set()
+    for spec in system.components:
+        for port in spec.outputs:
+            _visit(system, (spec.name, port), by_input, done, [])
+
+
+def _visit(
+    system: System,
+    node: tuple[str, str],
+    by_input: dict[tuple[str, str], tuple[str, str]],
+    done: set[tuple[str, str]],
+    path: list[tuple[str, str]],
+) -> None:
+    if node in path:
+        ring = " <- ".join("/".join(step) for step in [*path[path.index(node) :], node])
+        raise ConfigurationError(f"{system.file}: inputs must not form a cycle without delay; got {ring}")
+    if node in done:
+        return
+    for cause in _causes(system, node, by_input):
+        _visit(system, cause, by_input, done, [*path, node])
+    done.add(node)
+
+
+def _causes(
+    system: System, node: tuple[str, str], by_input: dict[tuple[str, str], tuple[str, str]]
+) -> Iterator[tuple[str, str]]:
+    port = _output(system, *node)
+    if port.delayed:
+        return
+    for name in port.on:
+        if (node[0], name) in by_input:
+            yield by_input[node[0], name]
