@@ -20,6 +20,8 @@ def cell_of(
     alpha_cells: int,
 ) -> int:
     """Index of the cell that holds (beta, alpha), or SINK outside the ranges. Plain Python that numba can compile."""
+    if not (abs(beta_rad) <= beta_range_rad and abs(alpha_rad) <= alpha_range_rad):  # true for NaN too
+        return -1
     row = math.floor((beta_rad + beta_range_rad) * beta_cells / (2.0 * beta_range_rad))
     column = math.floor((alpha_rad + alpha_range_rad) * alpha_cells / (2.0 * alpha_range_rad))
     if row < 0 or row >= beta_cells or column < 0 or column >= alpha_cells:
