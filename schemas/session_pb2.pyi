@@ -75,3 +75,11 @@ class Gap(_message.Message):
     first_missing: int
     count: int
     def __init__(self, key: _Optional[str] = ..., run: _Optional[int] = ..., first_missing: _Optional[int] = ..., count: _Optional[int] = ...) -> None: ...
+
+class Hold(_message.Message):
+    __slots__ = ("active", "component")
+    ACTIVE_FIELD_NUMBER: _ClassVar[int]
+    COMPONENT_FIELD_NUMBER: _ClassVar[int]
+    active: bool
+    component: str
+    def __init__(self, active: _Optional[bool] = ..., component: _Optional[str] = ...) -> None: ...
