@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from runtime.contract import ComponentError, Event, Port
+from runtime.contract import ComponentError, Event, Output, Port
 from runtime.launch import ComponentSpec, class_of, params_of
 from schemas.session_pb2 import Journal
 
@@ -54,7 +54,7 @@ class Hosted:
             ComponentError: an output port that was not declared, or a message of another schema.
         """
         self.handled += 1
-        return [self._stamped(*output, event.capture_ns) for output in self.component.handle(event)]
+        return [self._stamped(output, event.capture_ns) for output in self.component.handle(event)]
 
     def journal(self, batch: Journal, time_ns: int) -> Sample:
         """A batch of the journal, stamped; it has a sequence of its own."""
@@ -63,7 +63,8 @@ class Hosted:
         payload = batch.SerializeToString(deterministic=True)
         return Sample(f"{self.spec.name}/journal", "berth.Journal", payload, self.run, sequence, time_ns)
 
-    def _stamped(self, port: str, message: Any, capture_ns: int | None, caused_ns: int) -> Sample:
+    def _stamped(self, output: Output, caused_ns: int) -> Sample:
+        port, message, capture_ns = output
         declared = self.outputs.get(port)
         if declared is None or not isinstance(message, declared.schema):
             raise ComponentError(f"{self.spec.name}.{port}: is not declared as a port of {type(message).__name__}")

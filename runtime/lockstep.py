@@ -22,9 +22,9 @@ from runtime.messages import message_class
 class Tap(Protocol):
     """Gets the whole bus (`components.recorder`)."""
 
-    def message(
+    def message(  # noqa: D102
         self, key: str, schema: str, payload: bytes, run: int, sequence: int, capture_ns: int, time_ns: int
-    ) -> tuple[Any, ...]: ...  # noqa: D102
+    ) -> tuple[Any, ...]: ...
     def tick(self, time_ns: int) -> tuple[Any, ...]: ...  # noqa: D102
     def close(self) -> tuple[Any, ...]: ...  # noqa: D102
 
