@@ -1,0 +1,32 @@
+"""The experiments, by name. A module is imported only when its experiment is asked for."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import cast
+
+from experiments.campaign import Experiment
+from runtime.params import ConfigurationError
+
+EXPERIMENTS: Mapping[str, str] = {
+    "ceiling": "experiments.ceiling",
+    "docking-law": "experiments.law_comparison",
+    "trajectories": "experiments.trajectories",
+    "table2": "experiments.table2",
+    "curves": "experiments.curves",
+    "ablation": "experiments.ablation",
+    "schools": "experiments.schools",
+}
+"""Name on the command line: module with `NAME`, `jobs`, `run` and `draw`."""
+
+
+def load(name: str) -> Experiment:
+    """The experiment of that name.
+
+    Raises:
+        ConfigurationError: no such name.
+    """
+    if name not in EXPERIMENTS:
+        raise ConfigurationError(f"experiment must be one of {', '.join(EXPERIMENTS)}; got {name!r}")
+    return cast("Experiment", importlib.import_module(EXPERIMENTS[name]))

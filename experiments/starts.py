@@ -1,0 +1,53 @@
+"""Start states that controllers are compared on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from docking.angles import DEG
+from docking.cells import Grid
+from docking.task import Task
+
+Floats = NDArray[np.float64]
+
+DISTANCES_M = (1.0, 1.25, 1.5, 1.75, 2.0)
+"""Start distances of the protocol: "a rectangle between 1 and 2 m" (Martinez-Marin and Duckett 2005, section VI)."""
+D_MIN_M = 0.2
+"""Closer than this is the sink."""
+SAMPLING_S = 0.125
+"""Sampling period Ts, Table I."""
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Start states, `[N]` each."""
+
+    beta_rad: Floats
+    alpha_rad: Floats
+    d_m: Floats
+
+    def __len__(self) -> int:
+        """N."""
+        return len(self.d_m)
+
+
+def protocol_starts(task: Task | None = None, distances_m: tuple[float, ...] = DISTANCES_M) -> Starts:
+    """All cell centres at each distance, distance by distance: `[len(distances_m) * cells]`."""
+    grid = Grid.of(task or Task())
+    centres = np.array([grid.centre(cell) for cell in range(grid.count)])
+    return Starts(
+        np.tile(centres[:, 0], len(distances_m)),
+        np.tile(centres[:, 1], len(distances_m)),
+        np.repeat(np.array(distances_m), grid.count),
+    )
+
+
+def demo_starts(count: int = 500, seed: int = 0) -> Starts:
+    """Seeded starts of the demonstration: |beta| <= 45 deg, |alpha| <= 30 deg, 1.5 to 2 m, all uniform."""
+    rng = np.random.default_rng([seed, count])
+    low, high = (-45 * DEG, -30 * DEG, 1.5), (45 * DEG, 30 * DEG, 2.0)
+    beta, alpha, d = rng.uniform(low, high, (count, 3)).T.copy()
+    return Starts(beta, alpha, d)
