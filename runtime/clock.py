@@ -1,41 +1,83 @@
-"""Tick schedules and session clocks; wall time comes in as an argument."""
+"""Session time, pure: every function takes the monotonic clock's reading as an argument."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+SECOND_NS = 1_000_000_000
 
-class Ticks:
-    """When a component's timer is due. The first tick is due at time 0; late ticks coalesce into one."""
+
+class TickSchedule:
+    """When a component's `tick` is due: once a period of session time; late ticks coalesce and are counted."""
 
     def __init__(self, hz: float) -> None:
-        self._period_ns = round(1e9 / hz)
+        """The first tick is due at time 0."""
+        self.period_ns = round(SECOND_NS / hz)
         self.next_ns = 0
         self.coalesced = 0
 
-    def due(self, time_ns: int) -> bool:
-        """Whether a tick is due at `time_ns`; asks for the next one after it."""
+    def due(self, time_ns: int) -> int | None:
+        """The time of the one tick to hand over now, or None.
+
+        Args:
+            time_ns: session time; never decreasing.
+
+        Returns:
+            The latest boundary up to `time_ns`, if it was not handed over yet.
+        """
         if time_ns < self.next_ns:
-            return False
-        missed = (time_ns - self.next_ns) // self._period_ns
-        self.coalesced += missed
-        self.next_ns += (missed + 1) * self._period_ns
-        return True
+            return None
+        boundary_ns = time_ns - time_ns % self.period_ns
+        self.coalesced += (boundary_ns - self.next_ns) // self.period_ns
+        self.next_ns = boundary_ns + self.period_ns
+        return boundary_ns
 
 
 @dataclass(frozen=True, slots=True)
 class PacedClock:
-    """Session time that follows the host's monotonic clock at a pace; the same for all processes of the host."""
+    """Session time that follows a host's monotonic clock; equal in all processes that share `origin_ns`."""
 
     origin_ns: int
-    """Monotonic time at which session time was 0."""
-    pace: float
+    """Monotonic time at which the session's time is 0."""
+    pace: float = 1.0
     """Session seconds per wall second."""
 
-    def time_ns(self, monotonic_ns: int) -> int:
-        """Session time."""
-        return round((monotonic_ns - self.origin_ns) * self.pace)
+    def session_ns(self, monotonic_ns: int) -> int:
+        """Session time at a monotonic time; 0 before the origin."""
+        return max(0, round((monotonic_ns - self.origin_ns) * self.pace))
 
-    def wall_s(self, time_ns: int, monotonic_ns: int) -> float:
-        """Wall seconds from now until session time `time_ns`; negative if it has passed."""
-        return (time_ns / self.pace - (monotonic_ns - self.origin_ns)) * 1e-9
+    def monotonic_ns(self, session_ns: int) -> int:
+        """The monotonic time at which the session's time is `session_ns`."""
+        return self.origin_ns + round(session_ns / self.pace)
+
+
+class FrameClock:
+    """Session time in lockstep: the newest capture time handed over so far."""
+
+    def __init__(self) -> None:
+        """Time starts at 0."""
+        self.now_ns = 0
+
+    def advance(self, capture_ns: int) -> int:
+        """Session time at the hand-over of a message of this capture time."""
+        if capture_ns > self.now_ns:
+            self.now_ns = capture_ns
+        return self.now_ns
+
+
+class Pacer:
+    """Holds lockstep's next frame back until its wall time has come."""
+
+    def __init__(self, pace: float) -> None:
+        """The first frame asked for starts the clock."""
+        self._pace = pace
+        self._clock: PacedClock | None = None
+
+    def wait_ns(self, capture_ns: int, monotonic_ns: int) -> int:
+        """How long the frame of this capture time must wait; a late frame does not hurry those after it."""
+        if self._clock is None:
+            self._clock = PacedClock(monotonic_ns - round(capture_ns / self._pace), self._pace)
+        wait_ns = self._clock.monotonic_ns(capture_ns) - monotonic_ns
+        if wait_ns < 0:
+            self._clock = PacedClock(self._clock.origin_ns - wait_ns, self._pace)
+        return max(0, wait_ns)

@@ -11,10 +11,10 @@ import heapq
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
-from runtime.clock import Ticks
+from runtime.clock import TickSchedule
 from runtime.contract import GONE, STALL, STOP, TICK, ComponentError, Event, Stall, Tick
 from runtime.hosted import Hosted, Sample
-from runtime.journal import LIMIT, JournalWriter
+from runtime.journal import JournalWriter
 from runtime.launch import System
 from runtime.messages import message_class
 
@@ -50,7 +50,7 @@ class Lockstep:
         specs = [spec for spec in system.components if not spec.tap]
         self._hosted = [Hosted(spec, runs + index, system.file) for index, spec in enumerate(specs)]
         self._ticks = {
-            hosted.spec.name: Ticks(port.hz)
+            hosted.spec.name: TickSchedule(port.hz)
             for hosted in self._hosted
             for port in hosted.inputs.values()
             if isinstance(port, Tick)
@@ -118,7 +118,7 @@ class Lockstep:
 
     def _tick(self, hosted: Hosted) -> None:
         schedule = self._ticks.get(hosted.spec.name)
-        if schedule is not None and schedule.due(self.time_ns):
+        if schedule is not None and schedule.due(self.time_ns) is not None:
             self._hand(hosted, Event(self.time_ns, TICK, capture_ns=self.time_ns))
 
     def _stall(self) -> None:
@@ -132,10 +132,10 @@ class Lockstep:
     def _hand(self, hosted: Hosted, event: Event) -> None:
         journal = self._journals[hosted.spec.name]
         name = f"{GONE}:{event.message}" if event.port == GONE else event.port
-        journal.add(name, event.source_run, event.sequence, event.time_ns)
+        journal.add(name, event.source_run, event.sequence, event.time_ns, event.time_ns)
         for sample in hosted.handle(event):
             self._publish(sample)
-        if len(journal) >= LIMIT:
+        if journal.is_due(self.time_ns):
             self._publish_journal(hosted)
 
     def _publish(self, sample: Sample) -> None:
@@ -143,7 +143,9 @@ class Lockstep:
         self._count += 1
 
     def _publish_journal(self, hosted: Hosted) -> None:
-        self._publish(hosted.journal(self._journals[hosted.spec.name].take(), self.time_ns))
+        batch = self._journals[hosted.spec.name].take()
+        if batch is not None:
+            self._publish(hosted.journal(batch, self.time_ns))
 
     def _finish(self) -> None:
         """Hand everyone the last event; what they still say is recorded and read by nobody."""
