@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
+from google.protobuf.message import DecodeError
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Attachment, Channel, Metadata, Schema
@@ -25,12 +26,20 @@ class Logged(NamedTuple):
     """One message of a session."""
 
     topic: str
-    message: Any
-    """Decoded, or None if its schema is not one of ours."""
+    schema: str
+    payload: bytes
     run: int
     sequence: int
     capture_ns: int
     time_ns: int
+
+    def decoded(self) -> Any:
+        """The message, or None if its schema is not one of ours or its bytes are damaged."""
+        kind = message_class(self.schema)
+        try:
+            return kind.FromString(self.payload) if kind is not None else None
+        except DecodeError:
+            return None
 
 
 @dataclass(frozen=True)
@@ -101,10 +110,10 @@ class Recording:
             topics: keys below the realm to read; None = all.
         """
         for schema, channel, record in self._records(topics):
-            kind = message_class(schema.name) if schema is not None else None
             yield Logged(
                 channel.topic,
-                kind.FromString(record.data) if kind is not None else None,
+                schema.name if schema is not None else "",
+                record.data,
                 int(channel.metadata.get("run", "0"), 16),
                 record.sequence,
                 record.publish_time,

@@ -1,0 +1,1 @@
+"""What a session's file tells a person: numbers, pictures, one page."""

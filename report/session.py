@@ -1,0 +1,120 @@
+"""Everything the report needs, read from a session's file in one pass."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from docking.angles import wrap
+from docking.score import Trial
+from report.frames import Scoreboard
+from report.pairs import Pairs
+from runtime.params import ConfigurationError
+from runtime.recording import Logged, Recording
+from schemas.percept_pb2 import Percept
+from schemas.policy_pb2 import Policy
+from schemas.trial_pb2 import Trial as TrialMessage
+from schemas.truth_pb2 import Truth
+
+
+@dataclass
+class Session:
+    """A session as the report sees it."""
+
+    file: Path
+    metadata: Mapping[str, str]
+    launch: Mapping[str, Any]
+    whole: bool
+    trials: list[Trial] = field(default_factory=list)
+    collisions: int = 0
+    robot_s: float = 0.0
+    messages: int = 0
+    lost: int = 0
+    counts: dict[str, int] = field(default_factory=dict)
+    """Messages per topic."""
+    tracking_px: list[float] = field(default_factory=list)
+    """Residual of the can from the image centre, per visible frame."""
+    bearing_error_rad: list[float] = field(default_factory=list)
+    policies: list[Policy] = field(default_factory=list)
+    """Last table, as it stood at the end of training."""
+    pictures: dict[str, bytes] = field(default_factory=dict)
+    """Mode of the pilot -> the newest camera image in it."""
+
+
+def read(file: Path) -> Session:
+    """Read a session.
+
+    Raises:
+        ConfigurationError: not an MCAP file, or no session of ours.
+    """
+    recording = Recording(file)
+    launch = recording.launch()
+    if not launch:
+        raise ConfigurationError(f"{file}: must be a session of ours; it holds no launch file")
+    session = Session(file, recording.session(), launch, recording.whole())
+    _Reader(session).read(recording)
+    return session
+
+
+class _Reader:
+    """One pass over the file; the topics come from the session's own launch file."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._board = Scoreboard()
+        self._next: dict[tuple[str, int], int] = {}
+        self._pairs: Pairs[Percept, Truth] = Pairs()
+        self._image: Logged | None = None
+        self._policy: Logged | None = None
+        self._keys = {str(session.launch.get(name, "")) for name in ("trial", "truth")}
+
+    def read(self, recording: Recording) -> None:
+        """Fill the session."""
+        for logged in recording.messages():
+            self._count(logged)
+            if logged.topic in self._keys:
+                self._score(logged)
+            elif logged.schema == "foxglove.CompressedImage":
+                self._image = logged
+            elif logged.schema == "berth.Policy":
+                self._policy = logged
+            elif logged.schema == "berth.Percept":
+                self._compare(self._pairs.first(logged.capture_ns, logged.decoded()))
+        session, scorer = self._session, self._board.scorer
+        session.trials, session.collisions, session.robot_s = scorer.trials, scorer.collisions, self._board.robot_s
+        if self._policy is not None:
+            session.policies = [self._policy.decoded()]
+
+    def _count(self, logged: Logged) -> None:
+        session, key = self._session, (logged.topic, logged.run)
+        session.messages += 1
+        session.counts[logged.topic] = session.counts.get(logged.topic, 0) + 1
+        session.lost += max(0, logged.sequence - self._next.get(key, logged.sequence))
+        self._next[key] = logged.sequence + 1
+
+    def _score(self, logged: Logged) -> None:
+        message = logged.decoded()
+        if message is None:
+            return
+        self._board.take(message, logged.capture_ns)
+        if isinstance(message, Truth):
+            self._compare(self._pairs.second(logged.capture_ns, message))
+        elif self._image is not None:
+            self._session.pictures[TrialMessage.Mode.Name(message.mode)] = self._image.payload
+
+    def _compare(self, pair: tuple[Percept, Truth] | None) -> None:
+        if pair is None:
+            return
+        percept, truth = pair
+        if percept.visible:
+            self._session.tracking_px.append(math.hypot(truth.object_u_px, truth.object_v_px))
+            self._session.bearing_error_rad.append(abs(wrap(percept.pan_rad - truth.alpha_rad)))
+
+
+def resolved(session: Session) -> str:
+    """The resolved launch file, for people."""
+    return json.dumps(session.launch, indent=1, sort_keys=True)
