@@ -44,6 +44,14 @@ class Session:
     pictures: dict[str, bytes] = field(default_factory=dict)
     """Mode of the pilot -> the newest camera image in it."""
 
+    def launch_params(self, component: str) -> Mapping[str, Any]:
+        """Parameters of a component; empty if the session has none of that name."""
+        for spec in self.launch.get("components", ()):
+            if spec.get("name") == component:
+                params: Mapping[str, Any] = spec.get("params", {})
+                return params
+        return {}
+
 
 def read(file: Path) -> Session:
     """Read a session.

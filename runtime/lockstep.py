@@ -46,7 +46,7 @@ class Lockstep:
         self._taps = tuple(taps)
         self._heap: list[tuple[int, int, Sample]] = []
         self._count = 0
-        self._watched: dict[str, Callable[[Any], None]] = {}
+        self._watched: dict[str, Callable[[Any, int], None]] = {}
         specs = [spec for spec in system.components if not spec.tap]
         self._hosted = [Hosted(spec, runs + index, system.file) for index, spec in enumerate(specs)]
         self._ticks = {
@@ -63,15 +63,15 @@ class Lockstep:
         if system.end:
             self.watch(system.end, self._end)
 
-    def watch(self, key: str, call: Callable[[Any], None]) -> None:
-        """Call with every decoded message of a key."""
+    def watch(self, key: str, call: Callable[[Any, int], None]) -> None:
+        """Call with every decoded message of a key and its capture time."""
         self._watched[key] = call
 
     def stop(self, reason: str) -> None:
         """End after the message that is being handled."""
         self.end_reason = self.end_reason or reason
 
-    def _end(self, message: Any) -> None:
+    def _end(self, message: Any, _capture_ns: int) -> None:
         self.stop(message.reason)
 
     def run(self, duration_s: float | None = None) -> str:
@@ -114,7 +114,7 @@ class Lockstep:
     def _watch(self, sample: Sample) -> None:
         kind = message_class(sample.schema)
         if kind is not None:
-            self._watched[sample.key](kind.FromString(sample.payload))
+            self._watched[sample.key](kind.FromString(sample.payload), sample.capture_ns)
 
     def _tick(self, hosted: Hosted) -> None:
         schedule = self._ticks.get(hosted.spec.name)

@@ -1,0 +1,1 @@
+"""The command `berth`: one verb per file. Nothing imports it."""
