@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from docking.angles import DEG
+from docking.task import Task
 from runtime.contract import Input, Kind, Port
+from runtime.params import between, not_negative, one_of, positive
 from schemas.drive_pb2 import BaseState, Drive
 from schemas.grasp_pb2 import Grasp
 from schemas.percept_pb2 import Percept
@@ -17,6 +20,62 @@ from schemas.trial_pb2 import Trial
 @dataclass(frozen=True)
 class Params:
     """Parameters of this component."""
+
+    task: Task = field(default_factory=Task)
+    """Ranges, goal, actions and limits, from the launch file's [task]."""
+    train_s: float = not_negative(2400.0)
+    """Robot time to learn for; 0 = none. 40 minutes: Martinez-Marin and Duckett 2005, section VI, on their robot."""
+    evaluation_trials: int = not_negative(100)
+    """Trials with the frozen policy after the training; the robot is put at start 0, 1, 2, ..."""
+    controller: str = one_of("rl-lc", "rl", "lc", "rl-lc", "greedy")
+    """Who drives in training: rl = a random action for each cell, lc = the teacher, rl-lc = trial by trial teacher and
+    random (section V), greedy = the newest policy."""
+    evaluation_controller: str = one_of("greedy", "greedy", "lc")
+    """Who drives in evaluation: the policy, or the linear law on the continuous state."""
+    unknown_cells: str = one_of("lc", "lc", "random")
+    """Whom greedy asks in a cell that the policy knows nothing about."""
+    hold: str = one_of("cell", "cell", "sample")
+    """An action is held until the cell changes (the paper's semi-Markov step), or for one sample."""
+    k_beta_per_s: float = 2.25
+    """Gain of the linear law and teacher on beta. Best of a grid search on the geometric plant; by hand: 1.5."""
+    k_alpha_per_s: float = 1.5
+    """As above, on alpha."""
+    servo_k_beta_per_s: float = 6.0
+    """Gain of the servo on beta, from the goal cell to the pick-up. Tuned on the plant with 0.5 deg of noise."""
+    servo_k_alpha_per_s: float = 3.0
+    """As above, on alpha."""
+    servo_slow_tilt_rad: float = not_negative(4 * DEG)
+    """This much before the goal's tilt the servo slows down, so that a sample of motion is millimetres; 0 = never."""
+    servo_slowest: float = between(0.25, 0.01, 1.0)
+    """Share of the task's speed that is left at the goal's tilt."""
+    settle_s: float = positive(1.0)
+    """Longest wait for the base to stand still before the grasper is called."""
+    pick_up: bool = True
+    """A grasper is wired: after arriving wait for it."""
+    grasp_timeout_s: float = positive(40.0)
+    """Longer than this is a missed pick-up."""
+    lost_s: float = positive(15.0)
+    """Object not seen for longer ends a trial; the tracker's search takes some seconds."""
+    trial_timeout_s: float = positive(60.0)
+    """Longest trial, from its first sight of the object."""
+    placing_s: float = not_negative(0.2)
+    """Percepts captured sooner than this after a placement may still show the old place."""
+    reverse_speed_mps: float = positive(0.2)
+    """Speed backwards after a trial."""
+    reverse_turn_rate_radps: float = positive(25 * DEG)
+    """Fastest turn after a trial; 3 deg a frame, so that the object stays in the image."""
+    reverse_gain_per_s: float = positive(2.0)
+    """Turn rate per radian of bearing error."""
+    reverse_bearing_rad: float = between(60 * DEG, 0.0, 1.4)
+    """Largest bearing held while driving backwards; it moves beta."""
+    reverse_clear_tilt_rad: float = between(38 * DEG, 0.0, 1.57)
+    """Closer than this the robot backs off without turning on the spot: the gripper would sweep over the table."""
+    reverse_tolerance_rad: float = positive(3 * DEG)
+    """A start's bearing is met within this."""
+    reverse_timeout_s: float = positive(40.0)
+    """After this a trial begins where the robot is, or another start is drawn."""
+    start_share: float = between(0.85, 0.0, 1.0)
+    """Starts are drawn within this share of the ranges of beta and alpha, uniformly."""
 
 
 INPUTS: Mapping[str, Input] = {

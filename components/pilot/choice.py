@@ -1,0 +1,64 @@
+"""Who chooses the action in a cell, and how long it is held."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from components.pilot.progress import Held, Phase, Progress, Step, Wish
+from components.pilot.rules import Rules
+from components.pilot.sight import Sight
+from docking.cells import SINK, Grid
+from docking.linear import teacher_action
+from docking.policy import PolicyTable
+
+Actions = tuple[tuple[float, float], ...]
+_TRAINERS = {"rl": ("random", "random"), "lc": ("lc", "lc"), "rl-lc": ("lc", "random"), "greedy": ("greedy", "greedy")}
+"""Controllers of the even and the odd trials."""
+
+
+def controller_of(rules: Rules, progress: Progress) -> str:
+    """Who drives this trial: lc, random or greedy."""
+    if progress.phase == Phase.EVALUATE:
+        return rules.params.evaluation_controller
+    return _TRAINERS[rules.params.controller][progress.number % 2]
+
+
+def steer(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Sight) -> Step:
+    """Drive as the trial's controller says: the held action, or a new one in a new cell."""
+    controller = controller_of(rules, progress)
+    if controller == "lc" and progress.phase == Phase.EVALUATE:
+        omega = rules.teacher.omega_radps(sight.beta_rad, sight.alpha_rad)
+        progress = replace(progress, held=Held(controller="lc"))
+        return progress, Wish(rules.task.speed_mps, omega, "lc")
+    grid, cell = _cell(rules, table if controller == "greedy" else None, sight)
+    if cell != progress.held.cell or rules.params.hold == "sample":
+        progress = _choose(rules, table, progress, controller, grid, cell)
+    held = progress.held
+    return progress, Wish(held.v_mps, held.omega_radps, held.controller, held.action)
+
+
+def _cell(rules: Rules, table: PolicyTable | None, sight: Sight) -> tuple[Grid, int]:
+    """Cell of the policy's own grid if it has one there, else of the task's."""
+    if table is not None:
+        cell = table.grid.cell(sight.beta_rad, sight.alpha_rad)
+        if cell != SINK:
+            return table.grid, cell
+    return rules.grid, rules.grid.cell(sight.beta_rad, sight.alpha_rad)
+
+
+def _choose(
+    rules: Rules, table: PolicyTable | None, progress: Progress, controller: str, grid: Grid, cell: int
+) -> Progress:
+    actions: Actions = rules.task.actions
+    action: int | None = None
+    if controller == "greedy":
+        if table is not None and grid == table.grid:
+            actions, action = table.actions, table.act_in(cell)
+        controller = "greedy" if action is not None else rules.params.unknown_cells
+    if controller == "random":
+        action = int(rules.generator(progress).integers(len(actions)))
+        progress = replace(progress, draws=progress.draws + 1)
+    elif action is None:
+        action = teacher_action(rules.teacher, grid, cell, actions)
+    v, omega = actions[action]
+    return replace(progress, held=Held(cell, action, v, omega, controller))

@@ -1,0 +1,134 @@
+"""Messages to and from the pilot's session: one drive and one trial for each percept."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from dataclasses import replace
+
+from components.pilot import ports
+from components.pilot.progress import Mode, Outcome, Phase, Progress, Wish
+from components.pilot.rules import Rules
+from components.pilot.saved import from_text, to_text
+from components.pilot.session import step
+from components.pilot.sight import sight_of
+from components.pilot.table import table_of
+from components.pilot.trial import Frame
+from docking.policy import PolicyTable
+from runtime.contract import Event, Output
+from schemas.drive_pb2 import BaseState, Drive
+from schemas.grasp_pb2 import Grasp
+from schemas.percept_pb2 import Percept
+from schemas.policy_pb2 import Policy
+from schemas.session_pb2 import SessionEnd
+from schemas.trial_pb2 import Trial
+
+
+class Pilot:
+    """Runs trials: drives to the goal cell by the trial's controller, servoes, has the object picked up, drives back.
+
+    A percept whose capture time was answered before is ignored. Nothing is forgotten by `save` and `load`.
+    """
+
+    Params = ports.Params
+    inputs = ports.INPUTS
+    outputs = ports.OUTPUTS
+
+    def __init__(self, params: ports.Params, seed: int) -> None:
+        self._rules = Rules.of(params, seed)
+        self._progress = Progress()
+        self._table: PolicyTable | None = None
+        self.refused = 0
+        """Policy messages that were not valid."""
+
+    def handle(self, event: Event) -> tuple[Output, ...]:
+        """Answer a percept; remember the others."""
+        if event.port == "percept":
+            return self._answer(event.message, event.capture_ns)
+        if event.port == "base":
+            self._hear_base(event.message, event.capture_ns)
+        elif event.port == "grasp":
+            self._hear_grasp(event.message, event.capture_ns)
+        elif event.port == "policy":
+            self._hear_policy(event.message)
+        return ()
+
+    def save(self) -> bytes:
+        """Everything, as JSON."""
+        table = None if self._table is None else base64.b64encode(self._table.to_bytes()).decode()
+        return json.dumps({"progress": to_text(self._progress), "policy": table}, sort_keys=True).encode()
+
+    def load(self, state: bytes) -> None:
+        """Go on where `save` was called.
+
+        Raises:
+            ValueError: not a valid state; the pilot stays as it was.
+        """
+        try:
+            saved = json.loads(state)
+            progress = from_text(saved["progress"])
+            policy = saved["policy"]
+            table = None if policy is None else PolicyTable.from_bytes(base64.b64decode(policy, validate=True))
+        except (KeyError, TypeError, RecursionError) as error:
+            raise ValueError(f"pilot state is incomplete or mistyped: {error!r}") from error
+        self._progress, self._table = progress, table
+
+    def _answer(self, percept: Percept, capture_ns: int) -> tuple[Output, ...]:
+        before = self._progress
+        if capture_ns <= before.answered_ns:
+            return ()
+        sight = sight_of(self._rules.task, percept.visible, percept.slope, percept.pan_rad, percept.tilt_rad)
+        self._progress, wish = step(self._rules, before, Frame(capture_ns, sight, self._table))
+        outputs = (Output("drive", _drive(wish)), Output("trial", self._trial(wish)))
+        if self._progress.phase == Phase.FINISHED != before.phase:
+            return (*outputs, Output("end", SessionEnd(reason="finished")))
+        return outputs
+
+    def _trial(self, wish: Wish) -> Trial:
+        now = self._progress
+        return Trial(
+            phase=Phase(now.phase).name,
+            mode=Mode(now.mode).name,
+            number=now.number,
+            outcome=Outcome(now.outcome).name,
+            ended=now.ended,
+            controller=wish.controller,
+            action=wish.action,
+            policy_version=0 if self._table is None else self._table.version,
+            place=wish.place,
+            start=now.number if wish.place else 0,
+            goal_reached=now.goal_reached,
+            began_ns=now.began_ns,
+        )
+
+    def _hear_base(self, state: BaseState, capture_ns: int) -> None:
+        heard = self._progress.heard
+        if capture_ns >= heard.base_ns:
+            v, omega = _finite(state.v_mps), _finite(state.omega_radps)
+            heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, v_mps=v, omega_radps=omega)
+            self._progress = replace(self._progress, heard=heard)
+
+    def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
+        heard = self._progress.heard
+        if capture_ns >= heard.grasp_ns:
+            done = grasp.stage == Grasp.DONE
+            heard = replace(heard, grasp_ns=capture_ns, grasp_done=done, picked=done and grasp.picked)
+            self._progress = replace(self._progress, heard=heard)
+
+    def _hear_policy(self, policy: Policy) -> None:
+        """Take the newest policy; one that is known when the evaluation begins is frozen."""
+        if self._progress.phase != Phase.TRAIN and self._table is not None:
+            return
+        try:
+            self._table = table_of(policy)
+        except ValueError:
+            self.refused += 1
+
+
+def _drive(wish: Wish) -> Drive:
+    return Drive(engaged=wish.engaged, v_mps=wish.v_mps, omega_radps=wish.omega_radps)
+
+
+def _finite(value: float) -> float:
+    return value if math.isfinite(value) else 1e9

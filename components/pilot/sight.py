@@ -1,0 +1,30 @@
+"""What the pilot makes of a percept."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from docking.task import Task
+
+
+class Sight(NamedTuple):
+    """The object relative to the goal. Angles in rad; meaningless unless visible."""
+
+    visible: bool
+    beta_rad: float = 0.0
+    alpha_rad: float = 0.0
+    tilt_rad: float = 0.0
+
+
+UNSEEN = Sight(visible=False)
+STEEPEST = 1e3
+"""Slopes beyond this, 0.06 deg from upright, are no table edges."""
+
+
+def sight_of(task: Task, visible: bool, slope: float, pan_rad: float, tilt_rad: float) -> Sight:
+    """Read a percept; numbers that no head and no table edge can give count as not seen."""
+    if not visible or not (abs(slope) < STEEPEST and abs(pan_rad) <= math.pi and 0.0 < tilt_rad < math.pi / 2):
+        return UNSEEN
+    beta, alpha = task.state(slope, pan_rad, tilt_rad)
+    return Sight(visible=True, beta_rad=beta, alpha_rad=alpha, tilt_rad=tilt_rad)
