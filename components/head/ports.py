@@ -5,13 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from docking.angles import DEG
 from runtime.contract import Input, Kind, Port
+from runtime.params import between, positive
 from schemas.head_pb2 import HeadCommand, HeadState
 
 
 @dataclass(frozen=True)
 class Params:
-    """Parameters of this component."""
+    """What the pan-tilt unit can do. Defaults: Canon VC-C4, the camera of ActivMedia's PeopleBot."""
+
+    pan_limit_rad: float = between(100 * DEG, 0.01, 3.14)
+    """Pan stays within +- this. VC-C4 manual: +-100 deg."""
+    tilt_low_rad: float = between(0.0, -1.57, 1.57)
+    """Smallest tilt. Martinez-Marin and Duckett 2005, section II: 0 deg."""
+    tilt_high_rad: float = between(90 * DEG, -1.57, 1.5708)
+    """Largest tilt, downwards. As above: 90 deg."""
+    pan_rate_radps: float = positive(800 * 0.1125 * DEG)
+    """Fastest pan. VC-C4: 800 pulses/s of 0.1125 deg."""
+    tilt_rate_radps: float = positive(622 * 0.1125 * DEG)
+    """Fastest tilt. VC-C4: 622 pulses/s of 0.1125 deg."""
 
 
 INPUTS: Mapping[str, Input] = {
