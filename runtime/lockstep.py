@@ -43,6 +43,8 @@ class Lockstep:
         self.time_ns = 0
         self.end_reason = ""
         self.messages = 0
+        self.observe: Callable[[str, Event, list[Sample]], None] | None = None
+        """Called with a component's name, each event handed to it, and what it said."""
         self._taps = tuple(taps)
         self._heap: list[tuple[int, int, Sample]] = []
         self._count = 0
@@ -133,7 +135,10 @@ class Lockstep:
         journal = self._journals[hosted.spec.name]
         name = f"{GONE}:{event.message}" if event.port == GONE else event.port
         journal.add(name, event.source_run, event.sequence, event.time_ns, event.time_ns)
-        for sample in hosted.handle(event):
+        samples = hosted.handle(event)
+        if self.observe is not None:
+            self.observe(hosted.spec.name, event, samples)
+        for sample in samples:
             self._publish(sample)
         if journal.is_due(self.time_ns):
             self._publish_journal(hosted)
