@@ -1,0 +1,55 @@
+"""What every learning method can be told: the paper's parameters and our switches, with their sources."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from runtime.params import between, not_negative, one_of, positive
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Parameters of the learning methods. Section numbers are of Martinez-Marin and Duckett 2005."""
+
+    method: str = one_of("memory-sweep", "memory-sweep", "prioritised", "q-learning", "advantage")
+    """Which of `components.learner.methods`."""
+    model: str = one_of("displacement", "displacement", "exits")
+    """What the model's filter averages: the change of the continuous state, or which neighbouring cell was entered."""
+    adjoining_cells: int = between(1, 1, 8)
+    """k: a transition counts only if the cell changes by exactly this (eq. 5). Table I."""
+    hold_periods: int = not_negative(0)
+    """0: hold an action until the cell changes. Otherwise hold it so many sampling periods and count every successor:
+    learning without the adjoining property."""
+    sweeps: int = not_negative(1)
+    """N: backups of all known (cell, action) after each transition. Section IV."""
+    backups: int = positive(20)
+    """Prioritised sweeping only: backups after each transition."""
+    mirror: bool = True
+    """Every transition also counts for the mirrored cell and action. Section V."""
+    learning_rate: str = one_of("full", "full", "inverse")
+    """Of a backup from the model: 1, since the model averages already, or 1/visits once more. Learning without a model
+    always has 1/visits. Table I."""
+    process_noise: float = not_negative(0.0)
+    """Of the model's filter per visit, in units of the measurement's variance. 0 = running average, as in the paper."""
+    goal_reward: float = positive(300.0)
+    """Table I."""
+    sink_reward: float = between(-50.0, -1e6, 1e6)
+    """Table I."""
+    unknown_value: float = between(0.0, -1e6, 1e6)
+    """Q of a (cell, action) never tried. 0 as in the paper; the goal's reward makes exploration optimistic."""
+    advantage_scale: float = between(0.3, 0.01, 1.0)
+    """Advantage learning only (Baird 1993): 1 is Q-learning; smaller spreads the values of actions apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rewards:
+    """Discount is 1. Per sampling period -1, unless the goal or the sink is entered."""
+
+    goal: float
+    sink: float
+
+    def of(self, next_cell: int, goal: int, periods: float) -> float:
+        """Reward of one transition (paper, section V)."""
+        if next_cell == goal:
+            return self.goal
+        return self.sink if next_cell < 0 else -periods
