@@ -60,8 +60,7 @@ class FrameClock:
 
     def advance(self, capture_ns: int) -> int:
         """Session time at the hand-over of a message of this capture time."""
-        if capture_ns > self.now_ns:
-            self.now_ns = capture_ns
+        self.now_ns = max(self.now_ns, capture_ns)
         return self.now_ns
 
 

@@ -14,7 +14,7 @@ BATCH_NS = 100_000_000
 class Entry(NamedTuple):
     """One event of a run."""
 
-    index: int
+    number: int
     """Of the event in its run, from 0."""
     port: str
     source_run: int
@@ -81,7 +81,7 @@ class JournalWriter:
 
 
 def entries(batches: Iterable[Journal]) -> Iterator[Entry]:
-    """The events of a run, in order, from its batches; the caller looks for holes in `index`.
+    """The events of a run, in order, from its batches; the caller looks for holes in `number`.
 
     Raises:
         ValueError: a batch whose columns differ in length or name an unknown port.

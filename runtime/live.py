@@ -1,0 +1,206 @@
+"""The live shell of a fold: one process, one thread that calls `handle`, events from the bus."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from runtime.clock import SECOND_NS, FrameClock, PacedClock, Pacer, TickSchedule
+from runtime.contract import GONE, STALL, STOP, TICK, Event, Port, Stall, Tick
+from runtime.door import FAILURE
+from runtime.hosted import Hosted
+from runtime.inbox import Arrival, Notice
+from runtime.journal import JournalWriter
+from runtime.station import Station
+from runtime.wire import Decoder, Refused
+from runtime.wiring import publishers
+from schemas.session_pb2 import Hold
+
+HOLD_KEY = "supervisor/hold"
+_FUTURE_NS = SECOND_NS
+"""Real time: a capture time further ahead than this is a lie."""
+_IDLE_NS = SECOND_NS
+_SLICE_NS = 20_000_000
+"""A paced frame waits in slices, so that a signal is seen between two."""
+
+
+class Fold:
+    """Runs one component until it is asked to stop."""
+
+    def __init__(self, station: Station, hosted: Hosted) -> None:
+        """Subscribe to the component's wired inputs.
+
+        Args:
+            station: connected, not joined yet.
+            hosted: the component.
+        """
+        self._station = station
+        self._hosted = hosted
+        self._inbox = station.inbox
+        self._outlets = {outlet.key: outlet for outlet in station.outlets.ports.values()}
+        self._journal = JournalWriter()
+        self._newest_ns: dict[str, int] = {}
+        self._status_due_ns = 0
+        self._heard_ns = 0
+        self._holding = False
+        system = station.system
+        self._lockstep = system.clock == "lockstep"
+        self._frames = FrameClock()
+        self._clock = PacedClock(station.assignment.origin_ns, system.pace or 1.0)
+        self._pacer = Pacer(system.pace) if self._lockstep and system.pace else None
+        tick = hosted.inputs.get(TICK)
+        self._ticks = TickSchedule(tick.hz) if isinstance(tick, Tick) else None
+        stalls = self._lockstep and isinstance(hosted.inputs.get(STALL), Stall)
+        self._stall_ns = round(system.stall_s * SECOND_NS) if stalls else None
+        self._decoders = self._subscribe()
+
+    def _subscribe(self) -> dict[str, Decoder]:
+        sources = publishers(self._station.system)
+        decoders = {}
+        for name, key in self._station.spec.inputs.items():
+            port: Port = self._hosted.inputs[name]
+            box = self._inbox.box(name, port.queue, latest=port.queue == 1)
+            if self._lockstep:
+                box.block = True
+                if port.per_frame:
+                    box.latest, box.limit = False, max(port.queue, 16)
+            self._station.lane(box, key, port.schema, sources[key][0])
+            self._station.subscribe(key)
+            decoders[name] = Decoder(port.schema)
+        if self._stall_ns is not None:
+            self._station.lane(self._inbox.box(HOLD_KEY, 16), HOLD_KEY, Hold, "supervisor")
+            self._station.subscribe(HOLD_KEY)
+            decoders[HOLD_KEY] = Decoder(Hold)
+        return decoders
+
+    def run(self) -> None:
+        """Pass the barrier, handle events until asked to stop, hand over the last one, say goodbye."""
+        try:
+            self._station.join()
+            self._heard_ns = time.monotonic_ns()
+            if self._ticks is not None and self._lockstep and not self._station.stop.asked:
+                self._tick_up_to(0)
+            while not self._station.stop.asked:
+                self._turn()
+            self._hand(self._own_event(STOP, self._now_ns()))
+        finally:
+            self._flush_journal()
+            self._publish_status()
+            self._station.close()
+
+    def _turn(self) -> None:
+        now_ns = time.monotonic_ns()
+        if not self._lockstep and self._ticks is not None:
+            self._tick_up_to(self._clock.session_ns(now_ns))
+        if self._journal.is_due(now_ns):
+            self._flush_journal()
+        if now_ns >= self._status_due_ns:
+            self._publish_status()
+            self._status_due_ns = now_ns + SECOND_NS
+        entry = self._inbox.take(max(0, self._next_duty_ns(now_ns) - now_ns) / SECOND_NS)
+        if entry is None:
+            self._check_stall()
+        elif isinstance(entry, Arrival):
+            self._receive(entry)
+        else:
+            self._notice(entry)
+
+    def _next_duty_ns(self, now_ns: int) -> int:
+        """Monotonic time at which something must be done though nothing is received."""
+        duty_ns = min(now_ns + _IDLE_NS, self._status_due_ns)
+        journal_ns = self._journal.due_ns()
+        if journal_ns is not None:
+            duty_ns = min(duty_ns, journal_ns)
+        if not self._lockstep and self._ticks is not None:
+            duty_ns = min(duty_ns, self._clock.monotonic_ns(self._ticks.next_ns))
+        if self._stall_ns is not None:
+            duty_ns = min(duty_ns, self._heard_ns + self._stall_ns)
+        return duty_ns
+
+    def _now_ns(self) -> int:
+        if self._lockstep:
+            return self._frames.now_ns
+        return self._frames.advance(self._clock.session_ns(time.monotonic_ns()))
+
+    def _receive(self, sample: Arrival) -> None:
+        port, stamp = sample.box.name, sample.stamp
+        try:
+            self._check_capture(stamp.capture_ns)
+            message = self._decoders[port](sample.payload)
+        except Refused as reason:
+            self._station.door.refusals.add(sample.key, reason)
+            return
+        if port == HOLD_KEY:
+            self._hold(message)
+            return
+        self._heard_ns = time.monotonic_ns()
+        self._newest_ns[port] = max(stamp.capture_ns, self._newest_ns.get(port, 0))
+        if self._lockstep and self._ticks is not None:
+            self._tick_up_to(max(stamp.capture_ns, self._frames.now_ns))
+        time_ns = self._frames.advance(max(stamp.capture_ns, self._now_ns()))
+        self._hand(Event(time_ns, port, message, *_cause(stamp)))
+
+    def _check_capture(self, capture_ns: int) -> None:
+        if not self._lockstep and capture_ns > self._now_ns() + _FUTURE_NS:
+            raise Refused(f"capture time {capture_ns} ns lies in the future")
+
+    def _notice(self, notice: Notice) -> None:
+        if notice.port == FAILURE:
+            raise notice.message
+        if notice.port == GONE and GONE in self._hosted.inputs:
+            name, run = notice.message
+            self._hand(self._own_event(GONE, self._now_ns(), name, run))
+
+    def _hold(self, hold: Hold) -> None:
+        self._holding = hold.active
+        self._heard_ns = time.monotonic_ns()
+
+    def _check_stall(self) -> None:
+        now_ns = time.monotonic_ns()
+        if self._stall_ns is None or now_ns < self._heard_ns + self._stall_ns:
+            return
+        self._heard_ns = now_ns
+        if not self._holding:
+            late = min(self._newest_ns, key=lambda port: self._newest_ns[port], default="any input")
+            self._station.note = f"stall: nothing on {late} since {self._newest_ns.get(late, 0) / 1e9:.3f} s"
+            print(self._station.note, flush=True)  # noqa: T201  (standard output is the component's log)
+            self._hand(self._own_event(STALL, self._now_ns()))
+
+    def _tick_up_to(self, time_ns: int) -> None:
+        due_ns = self._ticks.due(time_ns) if self._ticks is not None else None
+        if due_ns is not None:
+            self._hand(self._own_event(TICK, self._frames.advance(time_ns)))
+
+    @staticmethod
+    def _own_event(port: str, time_ns: int, message: Any = None, run: int = 0) -> Event:
+        """An event that the shell makes; what it causes is as old as the event itself."""
+        return Event(time_ns, port, message, time_ns, run)
+
+    def _hand(self, event: Event) -> None:
+        name = f"{GONE}:{event.message}" if event.port == GONE else event.port
+        self._journal.add(name, event.source_run, event.sequence, event.time_ns, time.monotonic_ns())
+        for sample in self._hosted.handle(event):
+            if self._pacer is not None and sample.capture_ns > event.time_ns:
+                self._wait(self._pacer.wait_ns(sample.capture_ns, time.monotonic_ns()))
+            self._outlets[sample.key].send(sample.payload, sample.sequence, sample.capture_ns)
+
+    def _wait(self, wait_ns: int) -> None:
+        """Keep the world's next frame back until its wall time."""
+        until_ns = time.monotonic_ns() + wait_ns
+        while not self._station.stop.asked:
+            remaining_ns = until_ns - time.monotonic_ns()
+            if remaining_ns <= 0:
+                return
+            time.sleep(min(remaining_ns, _SLICE_NS) / SECOND_NS)
+
+    def _flush_journal(self) -> None:
+        batch = self._journal.take()
+        if batch is not None:
+            self._station.outlets.journal.put(batch, self._frames.now_ns)
+
+    def _publish_status(self) -> None:
+        self._station.outlets.status.put(self._station.status(self._hosted.handled), self._frames.now_ns)
+
+
+def _cause(stamp: Any) -> tuple[int, int, int]:
+    return stamp.capture_ns, stamp.run, stamp.sequence

@@ -1,0 +1,292 @@
+"""The supervisor: one process per component, and nobody left behind."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable, Collection
+from contextlib import ExitStack
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import zenoh
+
+from runtime.assignment import READY_TIMEOUT_S, Assignment
+from runtime.bus import direct, free_endpoint, open_router, ready_key
+from runtime.child import Child
+from runtime.launch import ComponentSpec, System
+from runtime.live import HOLD_KEY
+from runtime.messages import message_class
+from runtime.outlet import Outlet
+from runtime.presence import LISTENS, STARTS, Presence, watch
+from runtime.qos import JOURNAL
+from runtime.restart import Restarts
+from runtime.runfile import Run, claim
+from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
+from schemas.session_pb2 import Hold
+
+NAME = "supervisor"
+_FOLDS_S, _TAPS_S = 1.2, 0.6
+"""Time to stop before SIGKILL: first for the folds, then for the taps, which record the folds' last messages."""
+_POLL_S = 0.01
+
+
+@dataclass(frozen=True)
+class Death:
+    """A process that ended although nobody had asked it to."""
+
+    name: str
+    exit_code: int
+    words: str
+    restarted: bool
+
+
+@dataclass
+class _Member:
+    spec: ComponentSpec
+    restarts: Restarts
+    child: Child
+    due_s: float | None = None
+    """Monotonic time of the next start, while it is down."""
+
+
+class Supervisor:
+    """Runs a system's components on this host.
+
+    Use as a context manager: leaving it stops everything, whatever happened.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        *,
+        only: Collection[str] = (),
+        endpoint: str = "",
+        ready_timeout_s: float = READY_TIMEOUT_S,
+    ) -> None:
+        """Nothing is started before `start`.
+
+        Args:
+            system: the resolved launch file.
+            only: names of the components to run; empty = all.
+            endpoint: where the host's router listens; empty = a free port on loopback.
+            ready_timeout_s: how long the components wait for one another.
+        """
+        self._system = system
+        self._specs = [spec for spec in system.components if not only or spec.name in only]
+        self._endpoint = endpoint or free_endpoint()
+        self._ready_timeout_s = ready_timeout_s
+        self._names = tuple(spec.name for spec in self._specs)
+        self._presence = Presence(self._names)
+        self._members: list[_Member] = []
+        self._resources = ExitStack()
+        self._watched: dict[str, Callable[[Any, int], None]] = {}
+        self._run: Run | None = None
+        self._hold: Outlet | None = None
+        self._holding: set[str] = set()
+        self._failure: BaseException | None = None
+        self._origin_ns = 0
+        self.end_reason = ""
+        """Why the session ended or shall end; empty while it runs."""
+        self.deaths: list[Death] = []
+
+    @property
+    def run(self) -> Run:
+        """What the run file says; after `start`."""
+        if self._run is None:
+            raise RuntimeError("start() comes first")
+        return self._run
+
+    @property
+    def exit_code(self) -> int:
+        """0 if nobody died who was not started again."""
+        return 1 if any(not death.restarted for death in self.deaths) else 0
+
+    @property
+    def missing(self) -> list[str]:
+        """Components that have not passed the start barrier."""
+        return self._presence.missing(STARTS)
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """Process ids of the components that run."""
+        return {member.spec.name: member.child.pid for member in self._members if member.child.exit_code is None}
+
+    def watch(self, key: str, call: Callable[[Any, int], None]) -> None:
+        """Call with every decoded message of a key below the realm and its capture time, on zenoh's thread."""
+        self._watched[key] = call
+
+    def start(self) -> None:
+        """Claim the realm, open the router, start every process.
+
+        Raises:
+            ConfigurationError: the realm or the endpoint is busy.
+        """
+        started = datetime.now(UTC).isoformat(timespec="milliseconds")
+        system = self._system
+        self._run = self._resources.enter_context(
+            claim(system.realm, self._endpoint, started, system.file, self._names)
+        )
+        session = open_router(self._endpoint)
+        self._resources.callback(session.close)
+        self._open_bus(session)
+        self._origin_ns = time.monotonic_ns()
+        for spec in self._specs:
+            restarts = Restarts(spec.restart, spec.restart_limit)
+            self._members.append(_Member(spec, restarts, self._spawn(spec, 0)))
+
+    def _open_bus(self, session: zenoh.Session) -> None:
+        run = new_run()
+        realm = self._system.realm
+        self._hold = Outlet(session, realm, HOLD_KEY, Hold, JOURNAL, run)
+        token = session.liveliness().declare_token(ready_key(realm, LISTENS, NAME, run))
+        self._resources.callback(lambda: token)  # lives as long as the session
+        watch(session, realm, self._presence, lambda *_: None, self._failed)
+        if self._system.end:
+            self._watched.setdefault(self._system.end, lambda *_: None)
+        for key in self._watched:
+            session.declare_subscriber(f"{realm}/{key}", direct(self._receiver(key)))
+
+    def _receiver(self, key: str) -> Callable[[zenoh.Sample], None]:
+        decoders: dict[str, Decoder | None] = {}
+
+        def receive(sample: zenoh.Sample) -> None:
+            try:
+                name = schema_name(str(sample.encoding))
+                if name not in decoders and len(decoders) < 2:
+                    kind = message_class(name)
+                    decoders[name] = Decoder(kind) if kind is not None else None
+                decoder = decoders.get(name)
+                if decoder is not None and sample.attachment is not None:
+                    stamp = unpack_stamp(sample.attachment.to_bytes())
+                    self._received(key, decoder(sample.payload.to_bytes()), stamp.capture_ns)
+            except Refused:
+                return  # its readers count it
+            except Exception as failure:  # noqa: BLE001  (zenoh would swallow it)
+                self._failed(failure)
+
+        return receive
+
+    def _received(self, key: str, message: Any, capture_ns: int) -> None:
+        if key == self._system.end:
+            self.stop_soon(message.reason or "end")
+        self._watched[key](message, capture_ns)
+
+    def _failed(self, failure: BaseException) -> None:
+        self._failure = failure
+
+    def _spawn(self, spec: ComponentSpec, restarts: int) -> Child:
+        assignment = Assignment(
+            system=self._system,
+            name=spec.name,
+            peers=self._names,
+            endpoint=self._endpoint,
+            origin_ns=self._origin_ns,
+            started=self.run.started,
+            restarts=restarts,
+            ready_timeout_s=self._ready_timeout_s,
+        )
+        return Child(assignment, Path(self.run.directory) / f"{spec.name}.log")
+
+    def stop_soon(self, reason: str) -> None:
+        """Let `poll` report the end; from any thread. The first reason counts."""
+        self.end_reason = self.end_reason or reason
+
+    def poll(self, timeout_s: float = 0.1) -> bool:
+        """Look after the processes for a while.
+
+        Returns:
+            Whether the session goes on; if not, call `stop` (or leave the context).
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while not self.end_reason:
+            if self._failure is not None:
+                raise self._failure
+            for member in self._members:
+                self._look_after(member)
+            if time.monotonic() >= deadline_s:
+                break
+            time.sleep(_POLL_S)
+        return not self.end_reason
+
+    def _look_after(self, member: _Member) -> None:
+        if member.due_s is not None:
+            if time.monotonic() >= member.due_s:
+                member.due_s = None
+                member.child = self._spawn(member.spec, member.restarts.count)
+        elif (code := member.child.exit_code) is not None:
+            self._bury(member, code)
+        elif member.spec.name in self._holding and member.spec.name not in self._presence.missing(STARTS):
+            self._set_hold(member.spec.name, active=False)
+
+    def _bury(self, member: _Member, code: int) -> None:
+        words = member.child.describe_end()
+        member.child.release()
+        delay_s = member.restarts.delay_s(code)
+        self.deaths.append(Death(member.spec.name, code, words, restarted=delay_s is not None))
+        if delay_s is None:
+            self.stop_soon(words)
+        else:
+            self._set_hold(member.spec.name, active=True)
+            member.due_s = time.monotonic() + delay_s
+
+    def _set_hold(self, name: str, *, active: bool) -> None:
+        """In lockstep no time passes while a component is being restarted."""
+        (self._holding.add if active else self._holding.discard)(name)
+        if self._hold is not None:
+            self._hold.put(Hold(active=bool(self._holding), component=name), 0)
+
+    def stop(self, reason: str = "stopped") -> None:
+        """Stop everything: folds first, then taps; SIGTERM, then SIGKILL. May be called twice."""
+        self.stop_soon(reason)
+        self._end([member for member in self._members if not member.spec.tap], _FOLDS_S)
+        self._end([member for member in self._members if member.spec.tap], _TAPS_S)
+        self._members = []
+        self._resources.close()
+
+    def _end(self, members: list[_Member], grace_s: float) -> None:
+        for member in members:
+            self._note_end(member)
+            member.child.send(signal.SIGTERM)
+        if not _wait(members, grace_s):
+            for member in members:
+                if member.child.exit_code is None:
+                    words = f"{member.spec.name} did not stop within {grace_s} s and was killed"
+                    self.deaths.append(Death(member.spec.name, -signal.SIGKILL, words, restarted=False))
+                member.child.send(signal.SIGKILL)
+            _wait(members, grace_s)
+        for member in members:
+            member.child.release()
+
+    def _note_end(self, member: _Member) -> None:
+        """Whoever ended since the last look ended unasked, too."""
+        code = member.child.exit_code
+        if code is not None and member.due_s is None and not any(d.name == member.spec.name for d in self.deaths):
+            self.deaths.append(Death(member.spec.name, code, member.child.describe_end(), restarted=False))
+
+    def __enter__(self) -> Self:
+        """Start."""
+        try:
+            self.start()
+        except BaseException:
+            self.stop("could not start")
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop."""
+        self.stop("stopped" if error is None else type(error).__name__)
+
+
+def _wait(members: list[_Member], timeout_s: float) -> bool:
+    deadline_s = time.monotonic() + timeout_s
+    while any(member.child.exit_code is None for member in members):
+        if time.monotonic() >= deadline_s:
+            return False
+        time.sleep(_POLL_S)
+    return True

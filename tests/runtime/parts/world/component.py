@@ -1,0 +1,31 @@
+"""A world that shows an image once its last one was answered."""
+
+from runtime.contract import STALL, TICK, Event, Output
+from schemas.image_pb2 import CompressedImage
+from schemas.session_pb2 import SessionEnd
+from tests.runtime.parts.world import ports
+
+FRAME_NS = 125_000_000
+
+
+class World:
+    Params = ports.Params
+    inputs = ports.INPUTS
+    outputs = ports.OUTPUTS
+
+    def __init__(self, params: ports.Params, seed: int) -> None:
+        self._params = params
+        self._frame = -1
+
+    def handle(self, event: Event) -> tuple[Output, ...]:
+        first = event.port == TICK and self._frame < 0
+        answered = event.port == "drive" and event.capture_ns == self._frame * FRAME_NS
+        if not (first or answered or event.port == STALL):
+            return ()
+        self._frame += 1
+        if self._frame == self._params.frames:
+            return (Output("end", SessionEnd(reason="all frames shown")),)
+        if 0 < self._params.frames < self._frame:
+            return ()
+        image = CompressedImage(format="none", data=bytes(self._params.payload_bytes))
+        return (Output("image", image, self._frame * FRAME_NS),)
