@@ -37,7 +37,7 @@ def run_in_process(system: System, watch: Watch, started: str, duration_s: float
     for key in (system.trial, system.truth):
         if key:
             engine.watch(key, follow)
-    with _on_signal(lambda: engine.stop("interrupted")):
+    with on_signal(lambda: engine.stop("interrupted")):
         return engine.run(duration_s)
 
 
@@ -47,7 +47,7 @@ def _tap(spec: ComponentSpec, system: System, started: str) -> Tap:
 
 
 @contextmanager
-def _on_signal(call: Callable[[], None]) -> Iterator[None]:
+def on_signal(call: Callable[[], None]) -> Iterator[None]:
     """Call once on SIGINT or SIGTERM."""
 
     def handler(_number: int, _frame: FrameType | None) -> None:

@@ -14,7 +14,6 @@ from typing import Any
 from cli.progress import Progress
 from docking.score import Trial, outcomes
 from report.frames import Scoreboard
-from runtime.launch import System
 
 
 @dataclass
@@ -79,9 +78,9 @@ def evaluated(trials: Sequence[Trial]) -> list[Trial]:
     return [trial for trial in trials if trial.phase == "EVALUATE"]
 
 
-def recording_name(system: System, now: datetime) -> Path:
+def recording_name(launch: Path, now: datetime) -> Path:
     """recordings/<launch file>-<UTC time>.mcap."""
-    stem = re.sub(r"[^A-Za-z0-9_-]", "-", Path(system.file).stem)
+    stem = re.sub(r"[^A-Za-z0-9_-]", "-", launch.stem)
     return Path("recordings") / f"{stem}-{now:%Y%m%d-%H%M%S}.mcap"
 
 

@@ -1,0 +1,96 @@
+"""`berth run LAUNCH`: start a system, show it, stop it cleanly, say where its recording and report are."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cli.progress import Progress
+from cli.session import Summary, Watch, now, recording_name
+from runtime.contract import ComponentError
+from runtime.launch import System, load
+
+GOOD_ENDS = ("duration", "interrupted")
+"""Reasons that are no failure, beside the end that the system itself declares."""
+
+LAUNCH = Annotated[Path, typer.Argument(help="Launch file.")]
+HOST = Annotated[str, typer.Option(help="Start only the components of this host.")]
+ONLY = Annotated[str, typer.Option(help="Start only these components, with commas between.")]
+SET = Annotated[list[str] | None, typer.Option("--set", help="COMPONENT.PARAM=VALUE, also task.KEY and session.KEY.")]
+RECORD = Annotated[Path | None, typer.Option(help="Recording to make; default: recordings/<launch>-<time>.mcap.")]
+NO_RECORD = Annotated[bool, typer.Option("--no-record", help="Record nothing; there is no report then.")]
+DURATION = Annotated[float | None, typer.Option(help="Session seconds to stop after.", min=0.0)]
+CLOCK = Annotated[str, typer.Option(help="lockstep, real, or a factor of real time.")]
+IN_PROCESS = Annotated[bool, typer.Option("--in-process", help="One process, virtual clock, repeatable.")]
+SEED = Annotated[int | None, typer.Option(help="Seed of the session.", min=0)]
+JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, at the end.")]
+QUIET = Annotated[bool, typer.Option("--quiet", help="No progress.")]
+
+
+def run(
+    launch: LAUNCH,
+    host: HOST = "",
+    only: ONLY = "",
+    overrides: SET = None,
+    record: RECORD = None,
+    no_record: NO_RECORD = False,
+    duration: DURATION = None,
+    clock: CLOCK = "",
+    in_process: IN_PROCESS = False,
+    seed: SEED = None,
+    as_json: JSON = False,
+    quiet: QUIET = False,
+) -> None:
+    """Start this host's part of a system. Example: berth run launch/sim.toml --duration 600."""
+    started = now()
+    system = load(
+        launch,
+        overrides or (),
+        clock="lockstep" if in_process else clock,
+        seed=seed,
+        host=host,
+        only=tuple(name for name in only.split(",") if name),
+        recording=None if no_record else record or recording_name(launch, started),
+    )
+    with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
+        watch = Watch(progress)
+        failed, reason = _run(system, watch, started.isoformat(timespec="seconds"), duration, in_process=in_process)
+    summary = watch.summary(reason, system.recording)
+    if summary.recording and watch.board.scorer.trials:
+        summary.report = _report(system.recording)
+    _print(summary, as_json=as_json)
+    raise typer.Exit(1 if failed else 0)
+
+
+def _run(system: System, watch: Watch, started: str, duration: float | None, *, in_process: bool) -> tuple[bool, str]:
+    """Returns (failed, reason)."""
+    if in_process:
+        from cli.in_process import run_in_process  # noqa: PLC0415
+
+        try:
+            return False, run_in_process(system, watch, started, duration)
+        except ComponentError as error:
+            return True, str(error)
+    from cli.on_bus import run_on_bus  # noqa: PLC0415
+
+    return run_on_bus(system, watch, duration)
+
+
+def _report(recording: Path | None) -> str:
+    from cli.report import write_report  # noqa: PLC0415
+
+    return str(write_report(recording)[0]) if recording is not None else ""
+
+
+def _print(summary: Summary, *, as_json: bool) -> None:
+    if as_json:
+        sys.stdout.write(json.dumps(summary.table()) + "\n")
+        return
+    console = Console()
+    for name, value in summary.table().items():
+        console.print(f"{name:12} {value}", highlight=False, soft_wrap=True)
