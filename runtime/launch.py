@@ -10,7 +10,7 @@ import json
 import re
 import tomllib
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -66,6 +66,12 @@ class System:
     text: str
     """The resolved launch file, for the session's log."""
 
+    @property
+    def recording(self) -> Path | None:
+        """File that the system's recorder writes; None without one."""
+        files = [str(spec.params.get("file", "")) for spec in self.components if spec.tap]
+        return next((Path(file) for file in files if file), None)
+
     def component(self, name: str) -> ComponentSpec:
         """The component of this name."""
         for spec in self.components:
@@ -113,7 +119,16 @@ def params_of(spec: ComponentSpec, file: str = "") -> Any:
     return build(ports_of(spec.run).Params, spec.params, f"{file}: {spec.name}.params")
 
 
-def load(file: str | Path, overrides: Iterable[str] = (), *, clock: str = "", seed: int | None = None) -> System:
+def load(
+    file: str | Path,
+    overrides: Iterable[str] = (),
+    *,
+    clock: str = "",
+    seed: int | None = None,
+    host: str = "",
+    only: Collection[str] = (),
+    recording: Path | None = None,
+) -> System:
     """Read, check and resolve a launch file.
 
     Args:
@@ -122,6 +137,9 @@ def load(file: str | Path, overrides: Iterable[str] = (), *, clock: str = "", se
             stand without quotes.
         clock: as on the command line; empty = as in the file.
         seed: as on the command line; None = as in the file.
+        host: keep only the components of this host; empty = all.
+        only: keep only these components; empty = all.
+        recording: file for the recorder (a tap with a parameter `file`); None = leave recorders out.
 
     Raises:
         ConfigurationError: one line that names file, key, value and rule.
@@ -134,7 +152,31 @@ def load(file: str | Path, overrides: Iterable[str] = (), *, clock: str = "", se
         session["clock"] = clock
     if seed is not None:
         session["seed"] = seed
-    return _resolved(table, session, str(file))
+    from runtime.wiring import check_wiring  # noqa: PLC0415  (wiring names this module's types)
+
+    system = _resolved(table, session, str(file))
+    check_wiring(system)
+    system = _selected(system, host, only, recording)
+    return dataclasses.replace(system, text=_text(system, table))
+
+
+def _selected(system: System, host: str, only: Collection[str], recording: Path | None) -> System:
+    """The part of a system that is to run here. Wires to the rest stay: it runs elsewhere."""
+    for name in only:
+        system.component(name)
+    hosts = {spec.host for spec in system.components}
+    if host and host not in hosts:
+        raise ConfigurationError(f"{system.file}: --host must be one of {', '.join(sorted(hosts))}; got {host!r}")
+    kept = []
+    for spec in system.components:
+        if (host and spec.host != host) or (only and spec.name not in only):
+            continue
+        if spec.tap and "file" in spec.params:
+            if recording is None:
+                continue
+            spec = dataclasses.replace(spec, params={**spec.params, "file": str(recording)})  # noqa: PLW2901
+        kept.append(spec)
+    return dataclasses.replace(system, components=tuple(kept))
 
 
 def _parsed(path: Path) -> dict[str, Any]:
@@ -175,8 +217,6 @@ def _table(table: Mapping[str, Any], key: str, where: str, defaults: Mapping[str
 
 
 def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -> System:
-    from runtime.wiring import check_wiring  # noqa: PLC0415  (wiring names this module's types)
-
     for key in table:
         if key not in {"realm", "session", "task", "component"}:
             raise ConfigurationError(f"{file}: {key} is unknown; known are realm, session, task, component")
@@ -194,9 +234,7 @@ def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -
         raise ConfigurationError(f"{file}: component must be a table of at least one component")
     specs = tuple(_component(name, entry, _shared(table, clock), seed, file) for name, entry in components.items())
     keys = {key: str(session[key]) for key in ("end", "trial", "truth")}
-    system = System(file, realm, clock, pace, seed, float(stall_s), **keys, components=specs, text="")
-    check_wiring(system)
-    return dataclasses.replace(system, text=_text(system, table))
+    return System(file, realm, clock, pace, seed, float(stall_s), **keys, components=specs, text="")
 
 
 def _clock(value: object, file: str) -> tuple[str, float | None]:
