@@ -5,13 +5,36 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from docking.angles import DEG
 from runtime.contract import Input, Kind, Peers, Port, Tick
+from runtime.params import between, one_of, positive
 from schemas.drive_pb2 import Applied, BaseCommand, BaseState, Drive
 
 
 @dataclass(frozen=True)
 class Params:
     """Parameters of this component."""
+
+    clock: str = one_of("lockstep", "lockstep", "real")
+    """Of the session. In lockstep every frame is answered once and nothing is said between frames."""
+    commanders: tuple[str, ...] = ("grasper", "pilot")
+    """Who answers every frame; a frame is decided when they have. The others speak when they like."""
+    max_age_s: float = between(0.3, 0.05, 2.0)
+    """A command that answers an older frame does not move the robot, and the robot stops when there is no newer."""
+    join_s: float = positive(0.02)
+    """Real clock: longest wait for a second commander's answer to a frame. One period of `tick`."""
+    repeat_s: float = positive(0.1)
+    """While stopped for want of a fresh command, the stop is repeated this often."""
+    max_speed_mps: float = positive(0.3)
+    """Either way. Three times the task's; a person walks beside it."""
+    max_turn_rate_radps: float = positive(60 * DEG)
+    """Either way."""
+    max_acceleration_mps2: float = positive(1.0)
+    """Of the command, from frame to frame; slowing down is not limited. The device's own limit is lower."""
+    max_turn_acceleration_radps2: float = positive(2.0)
+    """As above: a learner's full turn from rest in one frame."""
+    stop_when_gone: tuple[str, ...] = ()
+    """Components whose death stops the robot, until a frame captured after it is answered."""
 
 
 INPUTS: Mapping[str, Input] = {

@@ -1,0 +1,126 @@
+"""The robot base as a fold: commands in, one command out for each frame, and a stop whenever there is a reason."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, cast
+
+from components.base import ports
+from components.base.arbiter import Arbiter, Wish
+from components.base.drive import GONE, STOPPED, Drive
+from components.base.motion import NS, STILL, Motion, is_sane
+from runtime import contract
+from runtime.contract import Event, Output
+from schemas import drive_pb2
+from schemas.drive_pb2 import Applied, BaseCommand, BaseState, GripperAction
+
+COMMANDERS = ("teleop", "grasper", "pilot")
+"""Highest priority first."""
+_GRIPPER = frozenset(GripperAction.values())
+_NUMBERS = ("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "v_mps", "omega_radps")
+
+
+class Base:
+    """Arbitrates, limits, stops.
+
+    A frame is answered at once when the answer can not change any more; with the real clock also on the tick after
+    `join_s`. The age of a command is that of the frame it answers, on this host's clock. In lockstep no time passes
+    without an answer, so ticks mean nothing; the world's own watchdog acts when it steps without a command.
+    """
+
+    Params = ports.Params
+    inputs = ports.INPUTS
+    outputs = ports.OUTPUTS
+
+    def __init__(self, params: ports.Params, seed: int) -> None:
+        del seed  # nothing is random here
+        self._params = params
+        self._arbiter = Arbiter(COMMANDERS, params.commanders, round(params.max_age_s * NS))
+        self._drive = Drive(params)
+        self._state = BaseState()
+        self._state_ns = -1
+        self.refused = 0
+        """Commands and readings that were not finite or absurd."""
+
+    def handle(self, event: Event) -> tuple[Output, ...]:
+        """See the class."""
+        if event.port in COMMANDERS:
+            return self._command(event)
+        if event.port == "device":
+            return self._device(event.message, event.capture_ns)
+        if event.port == contract.TICK:
+            return self._tick(event.time_ns)
+        if event.port == contract.GONE:
+            return self._gone(event.message, event.time_ns)
+        return self._halt(STOPPED, event.time_ns) if event.port == contract.STOP else ()
+
+    def _command(self, event: Event) -> tuple[Output, ...]:
+        if event.capture_ns > event.time_ns:
+            self.refused += 1
+            return ()
+        wish = Wish(bool(event.message.engaged), self._motion(event.message), event.capture_ns)
+        self._arbiter.hear(event.port, wish, event.time_ns)
+        if self._arbiter.is_awaited(event.port):
+            return self._decide(event.capture_ns, event.time_ns, wait=True)
+        return self._free(event.port, event.time_ns)
+
+    def _motion(self, command: Any) -> Motion:
+        if not is_sane(command.v_mps, command.omega_radps):
+            self.refused += 1
+            return STILL
+        gripper = command.gripper if command.gripper in _GRIPPER else drive_pb2.GRIPPER_KEEP
+        return Motion(command.v_mps, command.omega_radps, gripper)
+
+    def _decide(self, capture_ns: int, time_ns: int, *, wait: bool) -> tuple[Output, ...]:
+        decision = self._arbiter.decide(capture_ns, time_ns, wait=wait)
+        return () if decision is None else _said(*self._drive.apply(decision), capture_ns)
+
+    def _free(self, commander: str, time_ns: int) -> tuple[Output, ...]:
+        """A person's command counts at once; in lockstep it waits for the next frame."""
+        decision = self._arbiter.free(commander, time_ns)
+        if self._params.clock == "lockstep" or decision is None:
+            return ()
+        return _said(*self._drive.apply(decision), decision.capture_ns)
+
+    def _tick(self, time_ns: int) -> tuple[Output, ...]:
+        if self._params.clock == "lockstep":
+            return ()
+        frame = self._arbiter.overdue(time_ns, round(self._params.join_s * NS))
+        if frame is not None:
+            return self._decide(frame, time_ns, wait=False)
+        reason = self._drive.check(time_ns)
+        return () if reason is None else self._halt(reason, time_ns)
+
+    def _gone(self, name: str, time_ns: int) -> tuple[Output, ...]:
+        if name not in self._params.stop_when_gone:
+            return ()
+        self._drive.gone_ns = time_ns
+        self._arbiter.close(time_ns)
+        return self._halt(GONE, time_ns)
+
+    def _halt(self, reason: str, time_ns: int) -> tuple[Output, ...]:
+        return _said(reason, self._drive.stop(), time_ns)
+
+    def _device(self, reading: BaseState, capture_ns: int) -> tuple[Output, ...]:
+        if capture_ns <= self._state_ns:
+            return ()
+        self._state_ns = capture_ns
+        state = BaseState()
+        state.CopyFrom(reading)
+        if not all(math.isfinite(getattr(reading, name)) for name in _NUMBERS):
+            self.refused += 1
+            for name in _NUMBERS:
+                setattr(state, name, getattr(self._state, name))
+        self._state = state
+        self._drive.bumper, self._drive.guard = state.bumper, state.guard
+        return (Output("state", state),)
+
+
+def _said(commander: str, motion: Motion, capture_ns: int) -> tuple[Output, ...]:
+    """The command to the device and what everyone may know of it."""
+    v, omega, gripper = motion
+    action = cast("GripperAction", gripper)
+    return (
+        Output("actuate", BaseCommand(v_mps=v, omega_radps=omega, gripper=action), capture_ns),
+        Output("applied", Applied(v_mps=v, omega_radps=omega, commander=commander, gripper=action), capture_ns),
+    )
