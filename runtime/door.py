@@ -31,7 +31,7 @@ class Lane:
     """One key that may pass."""
 
     def __init__(self, box: Box, key: str, encoding: str, publisher: str) -> None:
-        """Expect this encoding from this component (or `supervisor`)."""
+        """Expect this encoding from this component, or `supervisor`, or (empty) whoever is of this realm."""
         self.box = box
         self.key = key
         self.encoding = encoding
@@ -56,7 +56,7 @@ class Door:
     def announce(self, publisher: str, run: int, *, first: int | None) -> None:
         """A component's run may pass from now on; `first` as in `Sequences.expect`."""
         for lane in self._lanes.values():
-            if lane.publisher == publisher:
+            if lane.publisher in {"", publisher}:
                 lane.sequences.expect(run, first)
 
     def receive(self, sample: zenoh.Sample) -> None:

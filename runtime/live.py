@@ -64,7 +64,7 @@ class Fold:
                 box.block = True
                 if port.per_frame:
                     box.latest, box.limit = False, max(port.queue, 16)
-            self._station.lane(box, key, port.schema, sources[key][0])
+            self._station.lane(box, key, port.schema, sources.get(key, ("", ""))[0])
             self._station.subscribe(key)
             decoders[name] = Decoder(port.schema)
         if self._stall_ns is not None:

@@ -26,7 +26,7 @@ from runtime.qos import JOURNAL
 from runtime.restart import Restarts
 from runtime.runfile import Run, claim
 from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
-from schemas.session_pb2 import Hold
+from schemas.session_pb2 import Hold, Status
 
 NAME = "supervisor"
 _FOLDS_S, _TAPS_S = 1.2, 0.6
@@ -92,6 +92,8 @@ class Supervisor:
         self.end_reason = ""
         """Why the session ended or shall end; empty while it runs."""
         self.deaths: list[Death] = []
+        self.statuses: dict[str, Status] = {}
+        """The newest of each component."""
 
     @property
     def run(self) -> Run:
@@ -114,6 +116,16 @@ class Supervisor:
     def pids(self) -> dict[str, int]:
         """Process ids of the components that run."""
         return {member.spec.name: member.child.pid for member in self._members if member.child.exit_code is None}
+
+    @property
+    def messages(self) -> int:
+        """Messages published on output ports, as the components last said."""
+        return sum(status.published for status in list(self.statuses.values()))
+
+    @property
+    def lost(self) -> int:
+        """Messages lost, as the components last said."""
+        return sum(status.lost for status in list(self.statuses.values()))
 
     def watch(self, key: str, call: Callable[[Any, int], None]) -> None:
         """Call with every decoded message of a key below the realm and its capture time, on zenoh's thread."""
@@ -147,6 +159,8 @@ class Supervisor:
         watch(session, realm, self._presence, lambda *_: None, self._failed)
         if self._system.end:
             self._watched.setdefault(self._system.end, lambda *_: None)
+        for name in self._names:
+            self._watched[f"{name}/status"] = self._take_status
         for key in self._watched:
             session.declare_subscriber(f"{realm}/{key}", direct(self._receiver(key)))
 
@@ -174,6 +188,10 @@ class Supervisor:
         if key == self._system.end:
             self.stop_soon(message.reason or "end")
         self._watched[key](message, capture_ns)
+
+    def _take_status(self, status: Status, _: int) -> None:
+        if status.component in self._names:
+            self.statuses[status.component] = status
 
     def _failed(self, failure: BaseException) -> None:
         self._failure = failure
