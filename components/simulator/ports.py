@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from components.simulator.params import SUBSTEPS_HZ, Params
 from runtime.contract import Input, Kind, Port, Stall, Tick
 from schemas.drive_pb2 import BaseCommand, BaseState
 from schemas.head_pb2 import HeadCommand, HeadState
@@ -13,18 +13,14 @@ from schemas.session_pb2 import RecorderAck
 from schemas.trial_pb2 import Trial
 from schemas.truth_pb2 import Truth
 
-
-@dataclass(frozen=True)
-class Params:
-    """Parameters of this component."""
-
+__all__ = ["INPUTS", "OUTPUTS", "Params"]
 
 INPUTS: Mapping[str, Input] = {
     "drive": Port(BaseCommand, Kind.COMMAND, hz=8, per_frame=True),
     "aim": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True),
     "trial": Port(Trial, Kind.EVENT, hz=8, per_frame=True),
     "ack": Port(RecorderAck, Kind.EVENT, hz=8, optional=True),
-    "tick": Tick(hz=64),
+    "tick": Tick(hz=SUBSTEPS_HZ),
     "stall": Stall(),
 }
 _STEP = ("drive", "aim", "trial", "ack", "tick", "stall")

@@ -1,0 +1,119 @@
+"""The robot's base: a unicycle with latency, acceleration limits, a watchdog of its own and a bumper."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from components.simulator.params import Params
+from docking import plant
+
+BUMPER_RELEASE_M = 0.005
+"""The bumper stays pressed until the robot is this far off the table."""
+PENDING = 64
+"""Commands that wait for their effect; older ones are dropped."""
+
+
+class Twist(NamedTuple):
+    """What the base is asked to do."""
+
+    v_mps: float
+    omega_radps: float
+
+
+REST = Twist(0.0, 0.0)
+
+
+@dataclass(slots=True)
+class Pose:
+    """Of the axle, world frame."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+    def move(self, v_mps: float, omega_radps: float, dt_s: float) -> None:
+        """Drive an arc."""
+        self.x_m, self.y_m, self.heading_rad = plant.advance(
+            self.x_m, self.y_m, self.heading_rad, v_mps, omega_radps, dt_s
+        )
+
+    @property
+    def triple(self) -> tuple[float, float, float]:
+        """(x_m, y_m, heading_rad)."""
+        return self.x_m, self.y_m, self.heading_rad
+
+
+class Base:
+    """Moves only by what it was commanded."""
+
+    def __init__(self, params: Params, pose: Pose) -> None:
+        self._params = params
+        self.pose = pose
+        self.v_mps = 0.0
+        self.omega_radps = 0.0
+        self.bumper = False
+        self._pending: deque[tuple[int, Twist]] = deque(maxlen=PENDING)
+        self._wish = REST
+        self._heard_ns: int | None = None
+
+    def command(self, twist: Twist, arrival_ns: int) -> None:
+        """Take a command; it acts after the latency. One that the base can not do is a command to stand still."""
+        effect_ns = arrival_ns + round(self._params.command_latency_s * 1e9)
+        self._pending.append((effect_ns, twist if self._possible(twist) else REST))
+        self._heard_ns = arrival_ns
+
+    def _possible(self, twist: Twist) -> bool:
+        """False for nan too."""
+        return (
+            abs(twist.v_mps) <= self._params.speed_limit_mps and abs(twist.omega_radps) <= self._params.turn_limit_radps
+        )
+
+    def place(self, pose: Pose) -> None:
+        """Be there, at rest, with nothing commanded."""
+        self.pose = pose
+        self.v_mps = self.omega_radps = 0.0
+        self.bumper = False
+        self._pending.clear()
+        self._wish = REST
+
+    def step(self, time_ns: int, dt_s: float) -> None:
+        """Move from `time_ns` for `dt_s`."""
+        while self._pending and self._pending[0][0] <= time_ns:
+            self._wish = self._pending.popleft()[1]
+        wish = REST if self._deaf(time_ns) else self._wish
+        self.v_mps = _approach(self.v_mps, wish.v_mps, self._params.acceleration_mps2 * dt_s)
+        self.omega_radps = _approach(
+            self.omega_radps, wish.omega_radps, self._params.angular_acceleration_radps2 * dt_s
+        )
+        self._move(dt_s)
+
+    def _deaf(self, time_ns: int) -> bool:
+        return self._heard_ns is None or time_ns - self._heard_ns > self._params.watchdog_s * 1e9
+
+    def _move(self, dt_s: float) -> None:
+        before_m = self.clearance_m(self.pose)
+        ahead = Pose(*self.pose.triple)
+        ahead.move(self.v_mps, self.omega_radps, dt_s)
+        after_m = self.clearance_m(ahead)
+        if after_m < 0.0 and after_m < before_m:
+            self.v_mps = 0.0
+            self.bumper = True
+            ahead = Pose(*self.pose.triple)
+            ahead.move(0.0, self.omega_radps, dt_s)
+        elif after_m > BUMPER_RELEASE_M:
+            self.bumper = False
+        self.pose = ahead
+
+    def clearance_m(self, pose: Pose) -> float:
+        """Gap between the robot's circle and the table's edge; negative inside."""
+        p = self._params
+        beyond_m = max(-p.edge_offset_m - pose.x_m, pose.x_m + p.edge_offset_m - p.table_depth_m)
+        aside_m = abs(pose.y_m) - 0.5 * p.table_width_m
+        return math.hypot(max(beyond_m, 0.0), max(aside_m, 0.0)) + min(max(beyond_m, aside_m), 0.0) - p.robot_radius_m
+
+
+def _approach(value: float, target: float, step: float) -> float:
+    return min(max(target, value - step), value + step)
