@@ -1,0 +1,1 @@
+"""The simulation's graph with trivial folds: what the bus alone costs."""

@@ -1,0 +1,8 @@
+"""The ports of `components.grasper`, without its parameters."""
+
+from __future__ import annotations
+
+from benchmarks.ring.relay import NoParams as Params
+from components.grasper.ports import INPUTS, OUTPUTS
+
+__all__ = ["INPUTS", "OUTPUTS", "Params"]
