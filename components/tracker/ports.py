@@ -32,7 +32,7 @@ class Params:
     """Weight of an older frame relative to the next newer one in the line-of-sight drift (a fading-memory filter)."""
     frame_s: float = positive(0.125)
     """Time between frames. Martinez-Marin and Duckett 2005, Table I: Ts."""
-    head_lag_s: float = between(0.0, 0.0, 0.5)
+    head_lag_s: float = between(0.03, 0.0, 0.5)
     """Lag of the head behind a moving target, led by feed_forward."""
 
     base_latency_s: float = between(0.03, 0.0, 1.0)
