@@ -1,0 +1,1 @@
+"""Each prints the floor it compares with, measured in the same run."""
