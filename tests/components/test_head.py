@@ -1,9 +1,10 @@
 import math
 
-from components.head.component import Head
-from components.head.ports import Params
 from hypothesis import given
 from hypothesis import strategies as st
+
+from components.head.component import Head
+from components.head.ports import Params
 from runtime.contract import STOP, Event
 from schemas.head_pb2 import HeadCommand, HeadState
 

@@ -1,13 +1,14 @@
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tracking_world import World
+
 from components.tracker.component import Tracker
 from components.tracker.focal import NonsenseError, Sample, fit
 from components.tracker.gaze import direction
 from components.tracker.ports import Params
-from hypothesis import given
-from hypothesis import strategies as st
-from tracking_world import World
 
 DEG = math.pi / 180
 

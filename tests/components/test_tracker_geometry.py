@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from components.tracker.base_motion import BaseMotion, Limits, ramp
 from components.tracker.drift import Drift
 from components.tracker.gaze import direction, slope_at_centre
 from components.tracker.servo import Servo
 from docking import plant
 from docking.pinhole import Mount
-from hypothesis import given
-from hypothesis import strategies as st
 
 FOCAL = 364.0
 EDGE = np.array([-0.05, 0.0, -0.07])
@@ -95,7 +96,7 @@ def test_commands_that_never_become_due_are_bounded():
 def test_the_drift_is_sine_alpha_over_distance_whatever_the_speed_and_the_turns(v):
     drift, pose = Drift(), plant.pose(0.3, 0.5, 1.5)
     for _ in range(20):
-        beta, alpha, d = plant.observe(*pose)
+        _, alpha, d = plant.observe(*pose)
         turned = pose[2] - plant.pose(0.3, 0.5, 1.5)[2]
         drift.update(alpha + turned, v * 0.125, 0.6)
         pose = plant.advance(*pose, v, v / d * math.sin(alpha), 0.125)
