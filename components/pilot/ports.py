@@ -40,14 +40,17 @@ class Params:
     """Gain of the linear law and teacher on beta. Best of a grid search on the geometric plant; by hand: 1.5."""
     k_alpha_per_s: float = 1.5
     """As above, on alpha."""
-    servo_k_beta_per_s: float = 6.0
-    """Gain of the servo on beta, from the goal cell to the pick-up. Tuned on the plant with 0.5 deg of noise."""
-    servo_k_alpha_per_s: float = 3.0
+    servo_k_beta_per_s: float = 3.0
+    """Gain of the servo on beta, from the goal cell to the pick-up. Best on the plant with 0.5 deg of
+    noise and one sample of delay; the turn rate's limit matters more than the gains."""
+    servo_k_alpha_per_s: float = 4.0
     """As above, on alpha."""
     servo_slow_tilt_rad: float = not_negative(4 * DEG)
     """This much before the goal's tilt the servo slows down, so that a sample of motion is millimetres; 0 = never."""
     servo_slowest: float = between(0.25, 0.01, 1.0)
-    """Share of the task's speed that is left at the goal's tilt."""
+    """Share of the task's speed that is left at the goal's tilt; also the speed back after a step too far."""
+    servo_tolerance_rad: float = positive(0.7 * DEG)
+    """The goal's tilt is met within this; 8 mm."""
     settle_s: float = positive(1.0)
     """Longest wait for the base to stand still before the grasper is called."""
     pick_up: bool = True
