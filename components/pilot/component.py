@@ -8,12 +8,12 @@ import math
 from dataclasses import replace
 
 from components.pilot import ports
+from components.pilot.messages import table_of
 from components.pilot.progress import Mode, Outcome, Phase, Progress, Wish
 from components.pilot.rules import Rules
 from components.pilot.saved import from_text, to_text
 from components.pilot.session import step
 from components.pilot.sight import sight_of
-from components.pilot.table import table_of
 from components.pilot.trial import Frame
 from docking.policy import PolicyTable
 from runtime.contract import Event, Output
