@@ -1,0 +1,58 @@
+"""Prints every number we claim, with its floor: `make bench`, or `python -m benchmarks NAME...`."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import sys
+import time
+
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.figure import Figure
+
+BENCHMARKS = {
+    "sweep": "the sweep kernel against C, and robot-seconds learned per core-second",
+    "tracking": "error of the tracker and of the percept, in the loop with rendered images",
+    "speed": "lockstep on the bus and in one process against real time",
+    "latency": "frame to command against a bare chain of as many processes",
+    "stopping": "Ctrl-C and kill -9 of each process: how fast the robot stops",
+    "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
+}
+"""Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
+
+
+def main() -> int:
+    """Run the named benchmarks, or all; exit code 1 if a number is not what it must be."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(BENCHMARKS))
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    options = parser.parse_args()
+    for name in options.names:
+        if name not in BENCHMARKS:
+            parser.error(f"{name} is unknown; known are {', '.join(BENCHMARKS)}")
+    console = Console(stderr=options.json)
+    found: dict[str, list[Figure]] = {}
+    for name in options.names or BENCHMARKS:
+        console.print(f"[bold]{name}[/]: {BENCHMARKS[name]}")
+        began_s = time.monotonic()
+        found[name] = importlib.import_module(f"benchmarks.{name}").figures()
+        console.print(_table(found[name]))
+        console.print(f"[dim]{time.monotonic() - began_s:.0f} s[/]\n")
+    if options.json:
+        sys.stdout.write(json.dumps({name: [f._asdict() for f in figures] for name, figures in found.items()}) + "\n")
+    return 1 if any(figure.kept is False for figures in found.values() for figure in figures) else 0
+
+
+def _table(figures: list[Figure]) -> Table:
+    table = Table("figure", "measured", "asked", "", "note", header_style="dim")
+    for figure in figures:
+        mark = {True: "[green]kept[/]", False: "[red]not kept[/]", None: ""}[figure.kept]
+        table.add_row(figure.name, f"{figure.value:.4g} {figure.unit}".strip(), figure.rule, mark, figure.note)
+    return table
+
+
+if __name__ == "__main__":
+    sys.exit(main())
