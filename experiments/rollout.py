@@ -5,8 +5,6 @@ A controller is a table of action indices over cells; where it says -1, another 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -20,11 +18,11 @@ MAX_STEPS = 4000
 """Samples in one trial; none needs 2,000, since the distance falls all the time within the ranges."""
 MAX_TRANSITIONS = 4000
 
-advance = njit(plant.advance)
-observe = njit(plant.observe)
-pose = njit(plant.pose)
-printed_rates = njit(plant.printed_rates)
-cell_of = njit(cells.cell_of)
+advance = njit(nogil=True)(plant.advance)
+observe = njit(nogil=True)(plant.observe)
+pose = njit(nogil=True)(plant.pose)
+printed_rates = njit(nogil=True)(plant.printed_rates)
+cell_of = njit(nogil=True)(cells.cell_of)
 
 
 @njit(nogil=True, cache=True)

@@ -124,7 +124,16 @@ class Training:
         cell, action, entered, periods, beta_change, alpha_change, near = row
         if near and not self.protocol.close_is_sink:
             return
-        seen = Transition(int(cell), int(action), int(entered), periods, beta_change, alpha_change, near > 0.0)
+        seen = Transition(
+            cell=int(cell),
+            action=int(action),
+            next_cell=int(entered),
+            periods=periods,
+            beta_change_rad=beta_change,
+            alpha_change_rad=alpha_change,
+            motion_periods=periods,
+            too_close=near > 0.0,
+        )
         if self.method.observe(seen):
             self.method.plan()
 

@@ -150,7 +150,7 @@ class DisplacementModel(Model):
             [
                 transition.beta_change_rad * (0.5 * grid.beta_cells / grid.beta_range_rad),
                 transition.alpha_change_rad * (0.5 * grid.alpha_cells / grid.alpha_range_rad),
-                transition.periods,
+                transition.motion_periods,
                 float(transition.too_close),
             ]
         )

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from components.learner.settings import Settings
+from docking.angles import DEG
+from docking.task import Task
 from runtime.contract import Input, Kind, Port
+from runtime.params import between, positive
 from schemas.drive_pb2 import Applied
 from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
@@ -14,8 +18,27 @@ from schemas.trial_pb2 import Trial
 
 
 @dataclass(frozen=True)
-class Params:
-    """Parameters of this component."""
+class Params(Settings):
+    """Parameters of this component; those of the learning methods are inherited."""
+
+    task: Task = field(default_factory=Task)
+    """Cells, goal, actions and limits, from the launch file's [task]."""
+    sampling_period_s: float = positive(0.125)
+    """Ts, the unit of the paper's n. Table I."""
+    speed_tolerance_mps: float = positive(0.02)
+    """What base applied is an action if its speed differs by no more than this. A fifth of the speed."""
+    turn_tolerance_radps: float = positive(2 * DEG)
+    """As above, for the turn rate."""
+    action_share: float = between(0.6, 0.5, 1.0)
+    """A transition counts if its action was executed in at least this share of its frames."""
+    delay_samples: int = between(1, 0, 8)
+    """Frames until a new action is in force; that motion still belongs to the action before and is left out."""
+    max_gap_samples: float = between(2.5, 1.0, 80.0)
+    """Frames further apart than this break a transition."""
+    join_frames: int = between(8, 1, 64)
+    """An incomplete frame is given up when so many newer ones are complete."""
+    snapshot_every_trials: int = positive(10)
+    """The whole state is published at the end of every so many trials, and at the end of the training."""
 
 
 INPUTS: Mapping[str, Input] = {

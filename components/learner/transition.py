@@ -17,8 +17,10 @@ class Transition(NamedTuple):
     periods: float
     """Sampling periods that it took (the paper's n)."""
     beta_change_rad: float
-    """Of the continuous state, from the first sample in `cell` to the last of the transition."""
+    """Of the continuous state while the action was in force."""
     alpha_change_rad: float
     """As above."""
+    motion_periods: float
+    """Sampling periods during which the state changed so: `periods` less the delay until the action was in force."""
     too_close: bool = False
     """The trial ended at the tilt limit: a sink inside the ranges; `next_cell` is then SINK."""

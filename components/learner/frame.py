@@ -1,0 +1,75 @@
+"""One frame as the learner sees it: what was perceived, what was executed, and where the trial was."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from components.learner.ports import Params
+from docking.cells import SINK, Grid
+
+UNKNOWN_ACTION = -1
+"""What was executed is none of the task's actions."""
+_STEEPEST = 1e3
+"""Slopes beyond this, 0.06 deg from upright, are no table edges."""
+
+
+class Percept(NamedTuple):
+    """Of one frame, relative to the goal."""
+
+    visible: bool
+    cell: int
+    """Or SINK."""
+    beta_rad: float
+    alpha_rad: float
+    too_close: bool
+    """Beyond the tilt limit."""
+
+
+class Progress(NamedTuple):
+    """Of the trial in one frame."""
+
+    training: bool
+    """The session is in its training phase."""
+    learning: bool
+    """The robot approaches the object in a training trial."""
+    began_ns: int
+    """Names the trial."""
+    ended: int
+    """Trials ended in this phase so far."""
+
+
+class Frame(NamedTuple):
+    """All of one frame."""
+
+    capture_ns: int
+    percept: Percept
+    progress: Progress
+    action: int
+    """Index of the action that was executed, or UNKNOWN_ACTION."""
+
+
+UNSEEN = Percept(visible=False, cell=SINK, beta_rad=0.0, alpha_rad=0.0, too_close=False)
+
+
+def percept_of(params: Params, grid: Grid, visible: bool, slope: float, pan_rad: float, tilt_rad: float) -> Percept:
+    """The cell of a percept; numbers that no head and no table edge can give count as not seen."""
+    sane = abs(slope) < _STEEPEST and abs(pan_rad) <= math.pi and 0.0 < tilt_rad < math.pi / 2  # false for NaN
+    if not (visible and sane):
+        return UNSEEN
+    beta, alpha = params.task.state(slope, pan_rad, tilt_rad)
+    return Percept(
+        visible=True,
+        cell=grid.cell(beta, alpha),
+        beta_rad=beta,
+        alpha_rad=alpha,
+        too_close=tilt_rad > params.task.tilt_limit_rad,
+    )
+
+
+def action_of(params: Params, v_mps: float, omega_radps: float) -> int:
+    """Index of the task's action that speed and turn rate equal within the tolerances, or UNKNOWN_ACTION."""
+    for index, (v, omega) in enumerate(params.task.actions):
+        if abs(v_mps - v) <= params.speed_tolerance_mps and abs(omega_radps - omega) <= params.turn_tolerance_radps:
+            return index
+    return UNKNOWN_ACTION
