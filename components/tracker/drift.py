@@ -11,6 +11,9 @@ SHORTEST_M = 0.002
 LARGEST_RAD_PER_M = 5.0
 """The line of sight to a thing 0.2 m away turns by this at most."""
 
+LARGEST_JUMP_RAD = 0.1
+"""More than this between frames is no drift: the object or the robot was carried away."""
+
 
 @dataclass
 class Drift:
@@ -33,6 +36,8 @@ class Drift:
             way_m: driven since the last measurement, signed.
             memory: weight of an older measurement relative to the next newer one, 0..1.
         """
+        if self.known and abs(angle_rad - self.angle_rad) > LARGEST_JUMP_RAD:
+            self.forget()
         if not self.known or abs(way_m) < SHORTEST_M:
             self.angle_rad, self.known = angle_rad, True
             return

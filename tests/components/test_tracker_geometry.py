@@ -114,3 +114,11 @@ def test_the_drift_stays_when_the_robot_stands_and_when_it_reverses():
     assert drift.rad_per_m == before == pytest.approx(0.5, rel=1e-6)
     drift.update(0.5 * 0.0125 * 48, -0.0125, 0.6)
     assert drift.rad_per_m == pytest.approx(0.5, rel=1e-6)
+
+
+def test_a_jump_of_the_object_is_no_drift():
+    drift = Drift()
+    for i in range(20):
+        drift.update(0.5 * 0.0125 * i, 0.0125, 0.6)
+    drift.update(1.0, 0.0125, 0.6)
+    assert drift.rad_per_m == 0.0
