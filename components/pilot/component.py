@@ -9,9 +9,9 @@ from dataclasses import replace
 
 from components.pilot import ports
 from components.pilot.messages import table_of
-from components.pilot.progress import Mode, Outcome, Phase, Progress, Wish
+from components.pilot.progress import Heard, Mode, Outcome, Phase, Progress, Wish
 from components.pilot.rules import Rules
-from components.pilot.saved import from_text, to_text
+from components.pilot.saved import Saved, from_text, to_text
 from components.pilot.session import step
 from components.pilot.sight import sight_of
 from components.pilot.trial import Frame
@@ -38,6 +38,7 @@ class Pilot:
     def __init__(self, params: ports.Params, seed: int) -> None:
         self._rules = Rules.of(params, seed)
         self._progress = Progress()
+        self._heard = Heard()
         self._table: PolicyTable | None = None
         self.refused = 0
         """Policy messages that were not valid."""
@@ -57,7 +58,9 @@ class Pilot:
     def save(self) -> bytes:
         """Everything, as JSON."""
         table = None if self._table is None else base64.b64encode(self._table.to_bytes()).decode()
-        return json.dumps({"progress": to_text(self._progress), "policy": table}, sort_keys=True).encode()
+        return json.dumps(
+            {"session": to_text(Saved(self._progress, self._heard)), "policy": table}, sort_keys=True
+        ).encode()
 
     def load(self, state: bytes) -> None:
         """Go on where `save` was called.
@@ -67,19 +70,19 @@ class Pilot:
         """
         try:
             saved = json.loads(state)
-            progress = from_text(saved["progress"])
+            session = from_text(saved["session"])
             policy = saved["policy"]
             table = None if policy is None else PolicyTable.from_bytes(base64.b64decode(policy, validate=True))
         except (KeyError, TypeError, RecursionError) as error:
             raise ValueError(f"pilot state is incomplete or mistyped: {error!r}") from error
-        self._progress, self._table = progress, table
+        (self._progress, self._heard), self._table = session, table
 
     def _answer(self, percept: Percept, capture_ns: int) -> tuple[Output, ...]:
         before = self._progress
         if capture_ns <= before.answered_ns:
             return ()
         sight = sight_of(self._rules.task, percept.visible, percept.slope, percept.pan_rad, percept.tilt_rad)
-        self._progress, wish = step(self._rules, before, Frame(capture_ns, sight, self._table))
+        self._progress, wish = step(self._rules, before, Frame(capture_ns, sight, self._heard, self._table))
         outputs = (Output("drive", _drive(wish)), Output("trial", self._trial(wish)))
         if self._progress.phase == Phase.FINISHED != before.phase:
             return (*outputs, Output("end", SessionEnd(reason="finished")))
@@ -103,18 +106,16 @@ class Pilot:
         )
 
     def _hear_base(self, state: BaseState, capture_ns: int) -> None:
-        heard = self._progress.heard
+        heard = self._heard
         if capture_ns >= heard.base_ns:
-            v, omega = _finite(state.v_mps), _finite(state.omega_radps)
-            heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, v_mps=v, omega_radps=omega)
-            self._progress = replace(self._progress, heard=heard)
+            motion = (_finite(state.v_mps), _finite(state.omega_radps))
+            self._heard = Heard(capture_ns, state.bumper, *motion, heard.grasp_ns, heard.grasp_done, heard.picked)
 
     def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
-        heard = self._progress.heard
+        heard = self._heard
         if capture_ns >= heard.grasp_ns:
             done = grasp.stage == Grasp.DONE
-            heard = replace(heard, grasp_ns=capture_ns, grasp_done=done, picked=done and grasp.picked)
-            self._progress = replace(self._progress, heard=heard)
+            self._heard = replace(heard, grasp_ns=capture_ns, grasp_done=done, picked=done and grasp.picked)
 
     def _hear_policy(self, policy: Policy) -> None:
         """Take the newest policy; one that is known when the evaluation begins is frozen."""

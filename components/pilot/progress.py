@@ -83,7 +83,6 @@ class Progress:
 
     answered_ns: int = -1
     """Newest frame answered."""
-    heard: Heard = field(default_factory=Heard)
     phase: int = ruled(int(Phase.TRAIN), "a phase", lambda value: value in tuple(Phase))
     phase_began_ns: int = -1
     mode: int = ruled(int(Mode.WAIT), "a mode", lambda value: value in tuple(Mode))

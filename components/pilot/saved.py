@@ -4,28 +4,38 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from typing import NamedTuple
 
-from components.pilot.progress import Progress
+from components.pilot.progress import Heard, Progress
 from runtime.params import ConfigurationError, build
 
 _VERSION = 1
 
 
-def to_text(progress: Progress) -> str:
+class Saved(NamedTuple):
+    """What is kept."""
+
+    progress: Progress
+    heard: Heard
+
+
+def to_text(saved: Saved) -> str:
     """JSON; equal progress gives equal text."""
-    return json.dumps({"version": _VERSION, "progress": asdict(progress)}, sort_keys=True, allow_nan=False)
+    parts = {name: asdict(part) for name, part in saved._asdict().items()}
+    return json.dumps({"version": _VERSION, **parts}, sort_keys=True, allow_nan=False)
 
 
-def from_text(text: str) -> Progress:
-    """The progress that `to_text` wrote.
+def from_text(text: str) -> Saved:
+    """What `to_text` wrote.
 
     Raises:
         ValueError: it is none, or not a valid one; says why.
     """
     try:
-        saved = json.loads(text)
-        if not isinstance(saved, dict) or saved.get("version") != _VERSION:
+        parts = json.loads(text)
+        if not isinstance(parts, dict) or parts.get("version") != _VERSION:
             raise ValueError(f"pilot state must have version {_VERSION}")
-        return build(Progress, saved["progress"], "pilot state")
-    except (KeyError, TypeError, RecursionError, ConfigurationError) as error:
+        progress = build(Progress, parts["progress"], "pilot state: progress")
+        return Saved(progress, build(Heard, parts["heard"], "pilot state: heard"))
+    except (KeyError, TypeError, AttributeError, RecursionError, ConfigurationError) as error:
         raise ValueError(f"pilot state is incomplete or mistyped: {error}") from error

@@ -14,12 +14,11 @@ _FINISHED = Wish(engaged=False)
 
 def step(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """One frame of the session."""
-    progress = replace(progress, answered_ns=frame.time_ns)
     phase = _phase(rules, progress, frame.time_ns)
     if phase != progress.phase or progress.phase_began_ns < 0:
         return _enter(rules, progress, frame, phase)
     if phase == Phase.FINISHED:
-        return progress, _FINISHED
+        return replace(progress, answered_ns=frame.time_ns), _FINISHED
     if progress.over and phase == Phase.EVALUATE:
         return _place(progress, frame.time_ns, progress.number + 1)
     if progress.over:
@@ -44,7 +43,7 @@ def _enter(rules: Rules, progress: Progress, frame: Frame, phase: Phase) -> Step
     time_ns = frame.time_ns
     if phase != Phase.FINISHED:
         progress = replace(progress, outcome=int(Outcome.NONE), ended=0)
-    progress = replace(progress, phase=int(phase), phase_began_ns=time_ns)
+    progress = replace(progress, phase=int(phase), phase_began_ns=time_ns, answered_ns=time_ns)
     if phase == Phase.TRAIN:
         return go_on(rules, begin(progress, time_ns, 0), frame)
     if phase == Phase.EVALUATE:
@@ -53,5 +52,5 @@ def _enter(rules: Rules, progress: Progress, frame: Frame, phase: Phase) -> Step
 
 
 def _place(progress: Progress, time_ns: int, number: int) -> Step:
-    progress = replace(begin(progress, time_ns, number), mode=int(Mode.PLACE), placed_ns=time_ns)
+    progress = replace(begin(progress, time_ns, number), mode=int(Mode.PLACE), placed_ns=time_ns, answered_ns=time_ns)
     return progress, Wish(place=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from components.pilot import reverse
 from components.pilot.choice import steer
-from components.pilot.progress import REST, Held, Mode, Outcome, Phase, Progress, Step, Wish
+from components.pilot.progress import REST, Heard, Held, Mode, Outcome, Phase, Progress, Step, Wish
 from components.pilot.rules import NS, Rules
 from components.pilot.servo import has_arrived, servo
 from components.pilot.sight import Sight
@@ -26,6 +26,7 @@ class Frame(NamedTuple):
     time_ns: int
     """Capture time."""
     sight: Sight
+    heard: Heard
     table: PolicyTable | None
 
 
@@ -50,8 +51,8 @@ def begin(progress: Progress, time_ns: int, number: int) -> Progress:
 
 def go_on(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """One frame of the trial."""
-    if frame.sight.visible:
-        progress = replace(progress, seen_ns=frame.time_ns)
+    seen_ns = frame.time_ns if frame.sight.visible else progress.seen_ns
+    progress = replace(progress, answered_ns=frame.time_ns, seen_ns=seen_ns)
     return _MODES[progress.mode](rules, progress, frame)
 
 
@@ -74,7 +75,7 @@ def begin_reverse(rules: Rules, progress: Progress, frame: Frame) -> Progress:
 def _wait(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """Stand still until the object is in view."""
     if not frame.sight.visible:
-        if _bumped(progress):
+        if _bumped(progress, frame):
             return _ended(progress, Outcome.COLLIDED)
         if _since(frame, progress.seen_ns) > rules.params.lost_s:
             return _ended(progress, Outcome.LOST)
@@ -118,7 +119,7 @@ def _servo(rules: Rules, progress: Progress, frame: Frame) -> Step:
 
 
 def _settle(rules: Rules, progress: Progress, frame: Frame) -> Step:
-    heard = progress.heard
+    heard = frame.heard
     still = abs(heard.v_mps) < _STILL_MPS and abs(heard.omega_radps) < _STILL_RADPS
     fresh = heard.base_ns > progress.arrived_ns
     if not (still and fresh) and _since(frame, progress.arrived_ns) < rules.params.settle_s:
@@ -130,7 +131,7 @@ def _settle(rules: Rules, progress: Progress, frame: Frame) -> Step:
 
 def _grasp(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """Leave the robot to the grasper until it is done."""
-    heard = progress.heard
+    heard = frame.heard
     if heard.grasp_done and heard.grasp_ns >= progress.mode_began_ns:
         return _ended(progress, Outcome.PICKED if heard.picked else Outcome.MISSED)
     if _since(frame, progress.mode_began_ns) > rules.params.grasp_timeout_s:
@@ -163,7 +164,7 @@ def _place(rules: Rules, progress: Progress, frame: Frame) -> Step:
 def _failure(rules: Rules, progress: Progress, frame: Frame) -> Outcome | None:
     """Why a moving trial must end, whatever drives."""
     sight = frame.sight
-    if _bumped(progress):
+    if _bumped(progress, frame):
         return Outcome.COLLIDED
     if sight.visible and rules.grid.cell(sight.beta_rad, sight.alpha_rad) == SINK:
         return Outcome.SINK
@@ -172,8 +173,8 @@ def _failure(rules: Rules, progress: Progress, frame: Frame) -> Outcome | None:
     return None
 
 
-def _bumped(progress: Progress) -> bool:
-    return progress.heard.bumper and progress.heard.base_ns > progress.placed_ns
+def _bumped(progress: Progress, frame: Frame) -> bool:
+    return frame.heard.bumper and frame.heard.base_ns > progress.placed_ns
 
 
 def _ended(progress: Progress, outcome: Outcome) -> Step:
