@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from components.vision.params import Params
 from runtime.contract import Input, Kind, Port
 from schemas.image_pb2 import CompressedImage
 from schemas.view_pb2 import View
 
-
-@dataclass(frozen=True)
-class Params:
-    """Parameters of this component."""
-
+__all__ = ["INPUTS", "OUTPUTS", "Params"]
 
 INPUTS: Mapping[str, Input] = {"image": Port(CompressedImage, Kind.IMAGE, hz=8, queue=1, per_frame=True)}
 OUTPUTS: Mapping[str, Port] = {"view": Port(View, Kind.STATE, hz=8, per_frame=True, on=("image",))}

@@ -1,0 +1,60 @@
+"""The largest connected patch of a mask, and its median."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Mask = NDArray[np.uint8]
+
+
+class Blob(NamedTuple):
+    """A patch, cut out of its image."""
+
+    mask: Mask
+    """`[rows, columns]`, 255 where the patch is, else 0."""
+    left_px: int
+    """Image column of the first column of `mask`."""
+    top_px: int
+    """Image row of the first row of `mask`."""
+    pixels: int
+    """How many belong to the patch."""
+
+
+def largest(mask: Mask, pool: int) -> Blob | None:
+    """The largest patch of a mask of 0 and 255, or None.
+
+    Patches are told apart in an image `pool` times smaller (a divisor of both sides), in which a small pixel is set if
+    any of its pixels is: several times faster, and a gap of a pixel does not tear a thin stripe.
+    """
+    height, width = mask.shape
+    pooled = cv2.resize(mask, (width // pool, height // pool), interpolation=cv2.INTER_AREA)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(pooled, ltype=cv2.CV_16U)
+    if count < 2:
+        return None
+    label = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    x, y, w, h = (int(value) for value in stats[label, :4])
+    kept = np.asarray(labels[y : y + h, x : x + w] == label, np.uint8)
+    kept = np.asarray(cv2.resize(kept, (w * pool, h * pool), interpolation=cv2.INTER_NEAREST), np.uint8)
+    left, top = x * pool, y * pool
+    patch = mask[top : top + h * pool, left : left + w * pool] * kept
+    return Blob(patch, left, top, cv2.countNonZero(patch))
+
+
+def median(blob: Blob) -> tuple[float, float]:
+    """(column, row) in the image of the medians of the patch's pixels, between pixels where they fall there."""
+    columns = cv2.reduce(blob.mask, 0, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
+    rows = cv2.reduce(blob.mask, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
+    return blob.left_px + _middle(columns), blob.top_px + _middle(rows)
+
+
+def _middle(counts: NDArray[np.generic]) -> float:
+    """Where half of the counts lie on either side; a count is spread evenly over its pixel."""
+    total = np.cumsum(counts)
+    half = 0.5 * float(total[-1])
+    index = int(np.searchsorted(total, half))
+    before = float(total[index - 1]) if index else 0.0
+    return index - 0.5 + (half - before) / float(counts[index])

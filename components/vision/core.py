@@ -1,0 +1,69 @@
+"""What can be seen in one image: the object's middle and the table's edge."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.vision import blob, edge
+from components.vision.blob import Blob
+from components.vision.colour import Thresholds
+from components.vision.params import Params
+
+
+class Spot(NamedTuple):
+    """The object, px from the image centre."""
+
+    u_px: float
+    v_px: float
+    pixels: int
+
+
+class Border(NamedTuple):
+    """The table's edge, px from the image centre."""
+
+    slope: float
+    v_px: float
+    """Row at which it crosses the object's column, or the middle column if there is no object."""
+    pixels: int
+
+
+class Sight(NamedTuple):
+    """What one image shows; None for what is not there."""
+
+    spot: Spot | None
+    border: Border | None
+
+
+class Eyes:
+    """Looks at images `[height_px, width_px, 3]` blue, green, red; the same image gives the same sight."""
+
+    def __init__(self, params: Params) -> None:
+        self._params = params
+        self._thresholds = Thresholds(params)
+        self._middle = 0.5 * (params.width_px - 1)
+        self._half = 0.5 * (params.height_px - 1)
+
+    def look(self, image: NDArray[np.uint8]) -> Sight:
+        """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
+        is_object, is_stripe = self._thresholds.masks(image)
+        spot = self._spot(blob.largest(is_object, self._params.pool))
+        return Sight(spot, self._border(blob.largest(is_stripe, self._params.pool), spot.u_px if spot else 0.0))
+
+    def _spot(self, patch: Blob | None) -> Spot | None:
+        if patch is None or patch.pixels < self._params.object_pixels_min * self._params.scale**2:
+            return None
+        column, row = blob.median(patch)
+        return Spot(column - self._middle, row - self._half, patch.pixels)
+
+    def _border(self, stripe: Blob | None, u_px: float) -> Border | None:
+        if stripe is None or stripe.pixels < self._params.edge_pixels_min * self._params.scale**2:
+            return None
+        if max(stripe.mask.shape) < self._params.edge_length_min_px * self._params.scale:
+            return None
+        line = edge.line(stripe, self._params.height_px, self._params.width_px)
+        if line is None:
+            return None
+        return Border(line.slope, line.row_at(self._middle + u_px) - self._half, stripe.pixels)

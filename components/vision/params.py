@@ -1,0 +1,39 @@
+"""What the eyes take for the object and for the edge. Standard library only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from runtime.params import between, positive, ruled
+
+
+@dataclass(frozen=True)
+class Params:
+    """Parameters of this component."""
+
+    width_px: int = ruled(320, "a multiple of 8 between 64 and 1920", lambda px: 64 <= px <= 1920 and px % 8 == 0)
+    """Images of any other size are refused, before they are decoded."""
+    height_px: int = ruled(240, "a multiple of 8 between 48 and 1440", lambda px: 48 <= px <= 1440 and px % 8 == 0)
+    """As above."""
+    green_over_others: int = between(36, 1, 254)
+    """Object: green exceeds the larger of red and blue by at least this, of 255. Tuned in simulation."""
+    red_over_green: int = between(40, 1, 254)
+    """Stripe: red exceeds green by at least this ... Tuned in simulation."""
+    green_over_blue: int = between(40, 1, 254)
+    """... and green exceeds blue by at least this: orange, neither red nor yellow. Tuned in simulation."""
+    object_pixels_min: int = positive(30)
+    """Fewer pixels in an image 320 wide are not the object. A can 2.5 m away has 150."""
+    edge_pixels_min: int = positive(60)
+    """Fewer pixels in an image 320 wide are not the stripe."""
+    edge_length_min_px: int = positive(24)
+    """Nor is a blob that is shorter than this in an image 320 wide."""
+
+    @property
+    def pool(self) -> int:
+        """Patches are told apart in an image this many times smaller."""
+        return 2 if self.width_px <= 400 else 4
+
+    @property
+    def scale(self) -> float:
+        """Of lengths, against an image 320 wide."""
+        return self.width_px / 320.0
