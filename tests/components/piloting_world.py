@@ -1,0 +1,74 @@
+"""A perfect plant around a pilot: percepts from the pose, poses from the drive. No camera, no base, no bus."""
+
+import math
+from typing import NamedTuple
+
+from components.pilot.component import Pilot
+from docking import plant
+from runtime.contract import Event
+from schemas.drive_pb2 import BaseState, Drive
+from schemas.percept_pb2 import Percept
+from schemas.trial_pb2 import Trial
+
+HEIGHT_M = 0.45
+"""Of the camera above the object; the goal's tilt is atan(0.45 / 0.28)."""
+PERIOD_NS = 125_000_000
+DEG = math.pi / 180
+
+
+class Seen(NamedTuple):
+    """One frame: what the robot was, and what the pilot said."""
+
+    time_ns: int
+    beta_rad: float
+    alpha_rad: float
+    d_m: float
+    drive: Drive
+    trial: Trial
+    ended: bool
+
+    @property
+    def gripper_error_m(self):
+        """Distance of the gripper, 0.28 m ahead of the axle, from the object."""
+        heading = self.beta_rad - self.alpha_rad
+        ahead = 0.28 * math.cos(heading) - self.d_m * math.cos(self.beta_rad)
+        left = 0.28 * math.sin(heading) - self.d_m * math.sin(self.beta_rad)
+        return math.hypot(ahead, left)
+
+    @property
+    def heading_error_rad(self):
+        return abs(self.beta_rad - self.alpha_rad)
+
+
+def percept(beta, alpha, tilt, visible=True):
+    return Percept(visible=visible, slope=math.tan(beta) * math.sin(tilt), pan_rad=alpha, tilt_rad=tilt)
+
+
+def frame(pilot, k, message, state=None):
+    """Hand frame k to the pilot; returns (drive, trial, ended)."""
+    time_ns = k * PERIOD_NS
+    pilot.handle(Event(time_ns, "base", state or BaseState(), time_ns))
+    said = {o.port: o.message for o in pilot.handle(Event(time_ns, "percept", message, time_ns))}
+    return said["drive"], said["trial"], "end" in said
+
+
+def drive(params, seed, start, frames, *, noise_deg=0.0, generator=None, starts=None, blind=()):
+    """Closed loop. Yields a `Seen` per frame, until the pilot ends the session.
+
+    Args:
+        start: (beta_rad, alpha_rad, d_m) of the first frame.
+        starts: number -> (beta, alpha, d), where a placement puts the robot.
+        noise_deg: standard deviation of beta, alpha and tilt in the percept.
+        blind: frames in which the object is not seen.
+    """
+    pilot, pose, motion = Pilot(params, seed), plant.pose(*start), (0.0, 0.0)
+    for k in range(frames):
+        beta, alpha, d = plant.observe(*pose)
+        b, a, t = (0.0, 0.0, 0.0) if generator is None else generator.normal(0.0, noise_deg * DEG, 3)
+        look = percept(beta + b, alpha + a, math.atan2(HEIGHT_M, d) + t, k not in blind and abs(alpha) < 100 * DEG)
+        command, trial, ended = frame(pilot, k, look, BaseState(v_mps=motion[0], omega_radps=motion[1]))
+        yield Seen(k * PERIOD_NS, beta, alpha, d, command, trial, ended)
+        if ended:
+            return
+        motion = (command.v_mps, command.omega_radps) if command.engaged else (0.0, 0.0)
+        pose = plant.pose(*starts(trial.start)) if trial.place else plant.advance(*pose, *motion, 0.125)
