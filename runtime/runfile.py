@@ -11,7 +11,7 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -38,6 +38,8 @@ class Run:
     directory: str
     """Holds one log per component."""
     components: tuple[str, ...]
+    topics: Mapping[str, str]
+    """Key below the realm -> full name of its schema, for everything that may come on the bus."""
 
 
 def private_directory() -> Path:
@@ -56,7 +58,9 @@ def private_directory() -> Path:
 
 
 @contextmanager
-def claim(realm: str, endpoint: str, started: str, launch: str, components: tuple[str, ...]) -> Iterator[Run]:
+def claim(
+    realm: str, endpoint: str, started: str, launch: str, components: tuple[str, ...], topics: Mapping[str, str]
+) -> Iterator[Run]:
     """Hold a realm on this host.
 
     Raises:
@@ -70,7 +74,7 @@ def claim(realm: str, endpoint: str, started: str, launch: str, components: tupl
             raise ConfigurationError(f"{launch}: realm must not run yet; got {realm!r}, see `berth ps`")
         _prune(home)
         directory = tempfile.mkdtemp(prefix=f"{_slug(realm)}.", dir=_logs(home))
-        run = Run(realm, os.getpid(), endpoint, started, launch, directory, components)
+        run = Run(realm, os.getpid(), endpoint, started, launch, directory, components, topics)
         os.ftruncate(handle, 0)
         os.pwrite(handle, json.dumps(asdict(run)).encode(), 0)
         try:

@@ -25,6 +25,7 @@ from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL
 from runtime.restart import Restarts
 from runtime.runfile import Run, claim
+from runtime.tap import known_keys
 from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
 from schemas.session_pb2 import Hold, Status
 
@@ -140,7 +141,7 @@ class Supervisor:
         started = datetime.now(UTC).isoformat(timespec="milliseconds")
         system = self._system
         self._run = self._resources.enter_context(
-            claim(system.realm, self._endpoint, started, system.file, self._names)
+            claim(system.realm, self._endpoint, started, system.file, self._names, _topics(system))
         )
         session = open_router(self._endpoint)
         self._resources.callback(session.close)
@@ -299,6 +300,10 @@ class Supervisor:
     ) -> None:
         """Stop."""
         self.stop("stopped" if error is None else type(error).__name__)
+
+
+def _topics(system: System) -> dict[str, str]:
+    return {key: schema.DESCRIPTOR.full_name for key, schema, _ in known_keys(system)}
 
 
 def _wait(members: list[_Member], timeout_s: float) -> bool:
