@@ -59,12 +59,16 @@ class Calibration:
         return self._target()
 
     def fail(self, time_ns: int, params: Params) -> None:
-        """Give this attempt up."""
+        """Give this attempt up; the next begins where the head looks now, a step nearer to the object.
+
+        So an object that the image's border cuts off, and whose centre is not seen, comes into the image by and by.
+        """
         if self.step < 0 or time_ns < self.resume_ns:
             return
         self.failures += 1
+        target = self._target()
         self.coarse_px = 0.0
-        self._begin(self.pan_rad, self.tilt_rad)
+        self._begin(*target)
         if self.failures % params.calibration_attempts == 0:
             self.resume_ns = time_ns + round(params.calibration_pause_s * 1e9)
 

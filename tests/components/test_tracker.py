@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tracking_world import FRAME_NS, World
 
 from components.tracker.component import Tracker
 from components.tracker.ports import Params
@@ -16,6 +15,7 @@ from runtime.params import ConfigurationError
 from schemas.drive_pb2 import Applied
 from schemas.head_pb2 import HeadState
 from schemas.view_pb2 import View
+from tests.components.tracking_world import FRAME_NS, World
 
 DEG = math.pi / 180
 

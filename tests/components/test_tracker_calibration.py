@@ -3,12 +3,12 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracking_world import World
 
 from components.tracker.component import Tracker
 from components.tracker.focal import NonsenseError, Sample, fit
 from components.tracker.gaze import direction
 from components.tracker.ports import Params
+from tests.components.tracking_world import World
 
 DEG = math.pi / 180
 
@@ -65,6 +65,15 @@ def test_head_steps_teach_the_focal_length_within_1_5_percent(focal):
 def test_an_object_at_the_edge_of_the_image_does_not_leave_it(alpha, tilt):
     world = World(alpha=alpha, d=1.5, noise_px=0.3, home_tilt_rad=tilt, tilt=tilt)
     percept = world.until(lambda percept: percept.visible, 50)
+    assert percept.focal_px == pytest.approx(364.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("side", "d"), [(1, 0.4), (-1, 0.4), (1, 1.0), (-1, 1.7)])
+def test_an_object_cut_off_by_the_border_of_the_image_is_calibrated_after_a_few_attempts(side, d):
+    tilt = math.atan2(0.45, d)
+    off_rad = math.atan2(162.0, 364.0 * math.cos(tilt))
+    world = World(alpha=side * off_rad, d=d, noise_px=0.3, home_tilt_rad=tilt, tilt=tilt)
+    percept = world.until(lambda percept: percept.visible, 80)
     assert percept.focal_px == pytest.approx(364.0, rel=0.02)
 
 

@@ -2,10 +2,10 @@ import math
 from itertools import pairwise
 
 import pytest
-from tracking_world import FRAME_NS, World
 
 from components.tracker.ports import Params
 from components.tracker.search import Search
+from tests.components.tracking_world import FRAME_NS, World
 
 DEG = math.pi / 180
 PARAMS = Params()

@@ -18,6 +18,7 @@ STEP_S = 1 / 64
 EDGE = np.array([-0.05, 0.0, -0.07])
 ALONG_EDGE = np.array([0.0, 1.0, 0.0])
 HALF_IMAGE = (160.0, 120.0)
+OBJECT = np.array([0.066, 0.115])
 
 
 class World:
@@ -52,9 +53,14 @@ class World:
         return float(u), float(v)
 
     def view(self):
-        u, v = self.object_px
-        if self.hidden or not (abs(u) < HALF_IMAGE[0] and abs(v) < HALF_IMAGE[1]):
+        """The middle of what the image's border leaves of the object."""
+        centre_px = self.object_px
+        size_px = self.focal * OBJECT / math.hypot(self.truth[2], 0.45)
+        low = [max(c - s / 2, -h) for c, s, h in zip(centre_px, size_px, HALF_IMAGE, strict=True)]
+        high = [min(c + s / 2, h) for c, s, h in zip(centre_px, size_px, HALF_IMAGE, strict=True)]
+        if self.hidden or not all(a + 4 < b for a, b in zip(low, high, strict=True)):
             return View()
+        u, v = ((a + b) / 2 for a, b in zip(low, high, strict=True))
         slope = self.camera.slope(EDGE, ALONG_EDGE)
         edge_u, edge_v = self.camera.project(EDGE[None])[0]
         du, dv = self.noise_px * self.rng.standard_normal(2)
