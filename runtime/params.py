@@ -15,6 +15,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar, cast
 
+_SHOWN = 80
+"""Characters of a refused value that an error shows."""
 T = TypeVar("T")
 Number = TypeVar("Number", int, float)
 
@@ -95,7 +97,7 @@ def _checked(value: object, hint: Any, rule: Rule | None, where: str) -> object:
         return build(cast("type[Any]", hint), value, where)
     value = _typed(value, hint, where)
     if rule is not None and not rule.holds(value):
-        raise ConfigurationError(f"{where} must be {rule.words}; got {value!r}")
+        raise ConfigurationError(f"{where} must be {rule.words}; got {_shown(value)}")
     return value
 
 
@@ -112,6 +114,11 @@ def _typed(value: object, hint: Any, where: str) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         raise ConfigurationError(f"{where} must be finite; got {value!r}")
     return value
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
 
 
 def _name(hint: Any) -> str:

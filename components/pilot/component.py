@@ -39,7 +39,7 @@ class Pilot:
         self._rules = Rules.of(params, seed)
         self._progress = Progress()
         self._heard = Heard()
-        self._table: PolicyTable | None = None
+        self._table = PolicyTable.from_bytes(params.policy) if params.policy else None
         self.refused = 0
         """Policy messages that were not valid."""
 
@@ -100,7 +100,7 @@ class Pilot:
             action=wish.action,
             policy_version=0 if self._table is None else self._table.version,
             place=wish.place,
-            start=now.number if wish.place else 0,
+            start=self._rules.params.first_start + now.number if wish.place else 0,
             goal_reached=now.goal_reached,
             began_ns=now.began_ns,
         )

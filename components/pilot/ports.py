@@ -8,13 +8,23 @@ from dataclasses import dataclass, field
 from docking.angles import DEG
 from docking.task import Task
 from runtime.contract import Input, Kind, Port
-from runtime.params import between, not_negative, one_of, positive
+from runtime.params import between, not_negative, one_of, positive, ruled
 from schemas.drive_pb2 import BaseState, Drive
 from schemas.grasp_pb2 import Grasp
 from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
 from schemas.session_pb2 import SessionEnd
 from schemas.trial_pb2 import Trial
+
+
+def is_policy(data: bytes) -> bool:
+    """Whether these bytes are a policy file (or none at all)."""
+    from docking.policy import PolicyTable  # noqa: PLC0415  (numpy: not for every launch check)
+
+    try:
+        return not data or PolicyTable.from_bytes(data) is not None
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,11 @@ class Params:
     train_s: float = not_negative(2400.0)
     """Robot time to learn for; 0 = none. 40 minutes: Martinez-Marin and Duckett 2005, section VI, on their robot."""
     evaluation_trials: int = not_negative(100)
-    """Trials with the frozen policy after the training; the robot is put at start 0, 1, 2, ..."""
+    """Trials with the frozen policy after the training; the robot is put at one start after another"""
+    first_start: int = not_negative(0)
+    """Number of the evaluation's first start, so that one list of starts can be split."""
+    policy: bytes = ruled(b"", "a policy file", is_policy)
+    """Path of a policy to begin with; empty = none, until the learner sends one."""
     controller: str = one_of("rl-lc", "rl", "lc", "rl-lc", "greedy")
     """Who drives in training: rl = a random action for each cell, lc = the teacher, rl-lc = trial by trial teacher and
     random (section V), greedy = the newest policy."""
