@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 MAGIC = b"BERTH\x00\x01\n"
 LARGEST_BYTES = 64 * 1024 * 1024
 """More is refused unread: a learner's whole state is below 2 MB."""
-_TYPES = ("<f8", "<f4", "<i8", "<i4", "|i1", "|b1")
+_TYPES = ("<f8", "<f4", "<i8", "<i4", "<u4", "|i1", "|b1")
 _DIGEST_BYTES = 32
 
 
