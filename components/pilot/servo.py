@@ -15,8 +15,8 @@ def has_arrived(rules: Rules, sight: Sight) -> bool:
 def servo(rules: Rules, sight: Sight) -> Wish:
     """Steer until the tilt is the goal's; a step too far is taken back straight.
 
-    Driving straight on from the goal cell docks 14 % of the starts, steering about 95 %: the cell is entered at its
-    corner, half a metre out. Some enter it within a sample of the pick-up, too fast to stop there.
+    Driving straight on docks few: a fast approach enters the goal cell at its corner, half a metre out. Some enter it
+    within a sample of the pick-up, too fast to stop there.
     """
     params, task = rules.params, rules.task
     ahead = task.goal_tilt_rad - sight.tilt_rad

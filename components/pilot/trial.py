@@ -119,11 +119,14 @@ def _servo(rules: Rules, progress: Progress, frame: Frame) -> Step:
 
 
 def _settle(rules: Rules, progress: Progress, frame: Frame) -> Step:
+    """Wait for the base to stand still; if it coasted past the goal, go on with the servo."""
     heard = frame.heard
     still = abs(heard.v_mps) < _STILL_MPS and abs(heard.omega_radps) < _STILL_RADPS
     fresh = heard.base_ns > progress.arrived_ns
     if not (still and fresh) and _since(frame, progress.arrived_ns) < rules.params.settle_s:
         return progress, Wish(controller="servo")
+    if frame.sight.visible and not has_arrived(rules, frame.sight):
+        return _servo(rules, replace(progress, arrived_ns=-1), frame)
     if not rules.params.pick_up:
         return _ended(progress, Outcome.ARRIVED)
     return replace(progress, mode=int(Mode.GRASP), mode_began_ns=frame.time_ns), _UNGRASPED
