@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from docking.angles import DEG
 from docking.cells import Grid
+from docking.starts import start
 from docking.task import Task
 
 Floats = NDArray[np.float64]
@@ -45,9 +45,7 @@ def protocol_starts(task: Task | None = None, distances_m: tuple[float, ...] = D
     )
 
 
-def demo_starts(count: int = 500, seed: int = 0) -> Starts:
-    """Seeded starts of the demonstration: |beta| <= 45 deg, |alpha| <= 30 deg, 1.5 to 2 m, all uniform."""
-    rng = np.random.default_rng([seed, count])
-    low, high = (-45 * DEG, -30 * DEG, 1.5), (45 * DEG, 30 * DEG, 2.0)
-    beta, alpha, d = rng.uniform(low, high, (count, 3)).T.copy()
-    return Starts(beta, alpha, d)
+def demo_starts(count: int = 500, seed: int = 2005) -> Starts:
+    """The simulator's own list of demonstration starts (`docking.starts`), so that everybody compares on the same."""
+    rows = np.array([start("demo", seed, number, Task()) for number in range(count)])
+    return Starts(*rows.T.copy())

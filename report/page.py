@@ -42,8 +42,9 @@ def _page(session: Session, comparison: Sequence[Sequence[str]]) -> str:
         f"<h1>{escape(session.file.stem)}</h1>",
         f"<p class=note>{escape(_summary(session))}</p>",
         *_section("What became of the trials", _table(_outcome_rows(training, evaluation))),
-        *_section("Learning", _img(pictures.learning_curve(training))),
     ]
+    if training:
+        parts += _section("Learning", _img(pictures.learning_curve(training)))
     if comparison:
         parts += _section("The learned policy beside linear controllers, on the same starts", _table(comparison))
     parts += _paths(session, training, evaluation)
@@ -76,7 +77,9 @@ def _summary(session: Session) -> str:
 def _paths(session: Session, training: list[Trial], evaluation: list[Trial]) -> Iterable[str]:
     params = session.launch_params("simulator")
     offset_m = float(params.get("edge_offset_m", 0.05))
-    views = [pictures.plan_view(training[-40:], offset_m, "the last 40 training trials")]
+    views = []
+    if training:
+        views.append(pictures.plan_view(training[-40:], offset_m, "the last 40 training trials"))
     if evaluation:
         views.append(pictures.plan_view(evaluation, offset_m, "evaluation, frozen policy"))
     return _section("Paths, from above", "".join(_img(view) for view in views))

@@ -77,6 +77,7 @@ class _Reader:
         self._next: dict[tuple[str, int], int] = {}
         self._pairs: Pairs[Percept, Truth] = Pairs()
         self._image: Logged | None = None
+        self._images: dict[str, Logged] = {}
         self._policy: Logged | None = None
         self._keys = {str(session.launch.get(name, "")) for name in ("trial", "truth")}
 
@@ -94,6 +95,7 @@ class _Reader:
                 self._compare(self._pairs.first(logged.capture_ns, logged.decoded()))
         session, scorer = self._session, self._board.scorer
         session.trials, session.collisions, session.robot_s = scorer.trials, scorer.collisions, self._board.robot_s
+        session.pictures = {mode: logged.decoded().data for mode, logged in self._images.items()}
         if self._policy is not None:
             session.policies = [self._policy.decoded()]
 
@@ -112,7 +114,7 @@ class _Reader:
         if isinstance(message, Truth):
             self._compare(self._pairs.second(logged.capture_ns, message))
         elif self._image is not None:
-            self._session.pictures[TrialMessage.Mode.Name(message.mode)] = self._image.payload
+            self._images[TrialMessage.Mode.Name(message.mode)] = self._image
 
     def _compare(self, pair: tuple[Percept, Truth] | None) -> None:
         if pair is None:

@@ -48,7 +48,7 @@ class Lockstep:
         self._taps = tuple(taps)
         self._heap: list[tuple[int, int, Sample]] = []
         self._count = 0
-        self._watched: dict[str, Callable[[Any, int], None]] = {}
+        self._watched: dict[str, Callable[[Any, int], object]] = {}
         specs = [spec for spec in system.components if not spec.tap]
         self._hosted = [Hosted(spec, runs + index, system.file) for index, spec in enumerate(specs)]
         self._ticks = {
@@ -65,7 +65,7 @@ class Lockstep:
         if system.end:
             self.watch(system.end, self._end)
 
-    def watch(self, key: str, call: Callable[[Any, int], None]) -> None:
+    def watch(self, key: str, call: Callable[[Any, int], object]) -> None:
         """Call with every decoded message of a key and its capture time."""
         self._watched[key] = call
 
