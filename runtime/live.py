@@ -141,7 +141,7 @@ class Fold:
         self._hand(Event(time_ns, port, message, *_cause(stamp)))
 
     def _check_capture(self, capture_ns: int) -> None:
-        if not self._lockstep and capture_ns > self._now_ns() + _FUTURE_NS:
+        if not self._lockstep and capture_ns > self._clock.session_ns(time.monotonic_ns()) + _FUTURE_NS:
             raise Refused(f"capture time {capture_ns} ns lies in the future")
 
     def _notice(self, notice: Notice) -> None:

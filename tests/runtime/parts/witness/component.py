@@ -15,7 +15,7 @@ class Witness:
     outputs = ports.OUTPUTS
 
     def __init__(self, params: ports.Params, system: System, started: str) -> None:
-        self._file = Path(params.file).open("w", encoding="utf-8")
+        self._file = Path(params.file).open("w", encoding="utf-8")  # noqa: SIM115  (open for the whole run)
 
     def message(self, key, schema, payload, run, sequence, capture_ns, time_ns) -> tuple[Output, ...]:
         print(json.dumps([key, schema, payload.hex(), run, sequence, capture_ns, time_ns]), file=self._file)

@@ -18,14 +18,17 @@ class World:
         self._frame = -1
 
     def handle(self, event: Event) -> tuple[Output, ...]:
+        if self._params.clock == "real":
+            return self._show(event.time_ns) if event.port == TICK else ()
         first = event.port == TICK and self._frame < 0
         answered = event.port == "drive" and event.capture_ns == self._frame * FRAME_NS
         if not (first or answered or event.port == STALL):
             return ()
+        return self._show((self._frame + 1) * FRAME_NS)
+
+    def _show(self, capture_ns: int) -> tuple[Output, ...]:
         self._frame += 1
-        if self._frame == self._params.frames:
+        if 0 < self._params.frames <= self._frame:
             return (Output("end", SessionEnd(reason="all frames shown")),)
-        if 0 < self._params.frames < self._frame:
-            return ()
         image = CompressedImage(format="none", data=bytes(self._params.payload_bytes))
-        return (Output("image", image, self._frame * FRAME_NS),)
+        return (Output("image", image, capture_ns),)

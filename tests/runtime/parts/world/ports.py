@@ -13,6 +13,7 @@ class Params:
     frames: int = 50
     """The session ends after so many; 0 = never."""
     payload_bytes: int = 1000
+    clock: str = "lockstep"
 
 
 INPUTS = {
