@@ -6,7 +6,7 @@ import math
 from typing import Any, cast
 
 from components.base import ports
-from components.base.arbiter import Arbiter, Wish
+from components.base.arbiter import NOBODY, Arbiter, Wish
 from components.base.drive import GONE, STOPPED, Drive
 from components.base.motion import NS, STILL, Motion, is_sane
 from runtime import contract
@@ -76,11 +76,13 @@ class Base:
         return () if decision is None else _said(*self._drive.apply(decision), capture_ns)
 
     def _free(self, commander: str, time_ns: int) -> tuple[Output, ...]:
-        """A person's command counts at once; in lockstep it waits for the next frame."""
-        decision = self._arbiter.free(commander, time_ns)
-        if self._params.clock == "lockstep" or decision is None:
+        """A person's command, and the end of it, counts at once; in lockstep it waits for the next frame."""
+        if self._params.clock == "lockstep":
             return ()
-        return _said(*self._drive.apply(decision), decision.capture_ns)
+        decision = self._arbiter.free(commander, time_ns)
+        if decision is not None:
+            return _said(*self._drive.apply(decision), decision.capture_ns)
+        return self._halt(NOBODY, time_ns) if self._drive.commander == commander else ()
 
     def _tick(self, time_ns: int) -> tuple[Output, ...]:
         if self._params.clock == "lockstep":
@@ -99,7 +101,7 @@ class Base:
         return self._halt(GONE, time_ns)
 
     def _halt(self, reason: str, time_ns: int) -> tuple[Output, ...]:
-        return _said(reason, self._drive.stop(), time_ns)
+        return _said(*self._drive.stop(reason), time_ns)
 
     def _device(self, reading: BaseState, capture_ns: int) -> tuple[Output, ...]:
         if capture_ns <= self._state_ns:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from components.base.arbiter import STALE, Decision
+from components.base.arbiter import NOBODY, STALE, Decision
 from components.base.motion import NS, STILL, Motion, limited
 from components.base.ports import Params
 
@@ -19,6 +19,8 @@ class Drive:
     params: Params
     motion: Motion = STILL
     """In force."""
+    commander: str = NOBODY
+    """Whose it is, or why it is none."""
     answers_ns: int | None = None
     """Capture time of the frame that the newest command answers; None before the first."""
     bumper: bool = False
@@ -38,12 +40,13 @@ class Drive:
         self.answers_ns = max(decision.capture_ns, self.answers_ns or 0)
         if decision.commander != STALE:
             self.stopped_ns = None
-        return reason or decision.commander, self.motion
+        self.commander = reason or decision.commander
+        return self.commander, self.motion
 
-    def stop(self) -> Motion:
-        """Stand still from now on."""
-        self.motion = STILL
-        return STILL
+    def stop(self, reason: str) -> tuple[str, Motion]:
+        """Stand still from now on. Returns why, and the motion."""
+        self.motion, self.commander = STILL, reason
+        return reason, STILL
 
     def check(self, time_ns: int) -> str | None:
         """Reason to say a stop now, between frames; None if there is none, or if it was said just now."""
