@@ -45,12 +45,14 @@ def sink_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
 
 @njit(nogil=True, cache=True)
 def judge(limits: Limits, points: NDArray[np.float64]) -> NDArray[np.int8]:
-    """[N] of points [N, 3]: 1 in the goal, -1 in the sink, else 0. What is both is goal."""
+    """[N] of points [N, 3]: 1 in the goal, -1 in the sink or not a number, else 0."""
     verdicts = np.zeros(len(points), np.int8)
     for n in range(len(points)):
         beta, alpha, d = points[n]
-        if goal_level(limits, beta, alpha, d) <= 0.0:
+        if not math.isfinite(beta + alpha + d):
+            verdicts[n] = -1
+        elif goal_level(limits, beta, alpha, d) <= 0.0:
             verdicts[n] = 1
-        elif not sink_level(limits, beta, alpha, d) <= 0.0:
+        elif sink_level(limits, beta, alpha, d) > 0.0:
             verdicts[n] = -1
     return verdicts
