@@ -13,6 +13,7 @@ import zenoh
 from runtime.assignment import Assignment
 from runtime.bus import free_endpoint, open_peer, open_router
 from runtime.params import ConfigurationError
+from runtime.presence import STARTS, Presence, watch
 from runtime.supervise import Supervisor
 from runtime.wire import encoding_of, pack_stamp
 from schemas.drive_pb2 import BaseCommand
@@ -174,6 +175,9 @@ def test_what_is_malformed_is_counted_and_changes_nothing(tmp_path):
     with Supervisor(system) as supervisor:
         run_until(supervisor, lambda: not supervisor.missing)
         with open_peer(supervisor.run.endpoint) as stranger:
+            seen = Presence(("world", "echo", "witness"))
+            watch(stranger, system.realm, seen, lambda *_: None, pytest.fail)
+            assert seen.wait(STARTS, 20.0)  # a token comes after the subscribers of its process
             for payload, attachment, kind in junk:
                 stranger.put(f"{system.realm}/world/image", payload, attachment=attachment, encoding=kind)
             stranger.delete(f"{system.realm}/world/image")
