@@ -89,6 +89,52 @@ def test_with_feed_forward_the_pan_turns_against_the_base():
     assert aim.pan_rate_radps == pytest.approx(-0.17, abs=0.005)
 
 
+@pytest.mark.parametrize("omega", [0.5, -0.5])
+def test_the_rates_foresee_what_the_base_does_with_its_last_command(omega):
+    world = calibrated(alpha=0.0, beta=0.0)
+    world.frame()
+    world.frame(omega=omega)
+    before = world.truth[1]
+    aim, _ = world.frame(omega=omega)
+    assert aim.pan_rate_radps * 0.125 == pytest.approx(world.truth[1] - before, rel=0.06)  # the world steps
+
+
+def test_the_lag_of_the_head_is_led():
+    world = calibrated(alpha=0.0, beta=0.0)
+    for _ in range(12):
+        world.frame(omega=0.17)
+    assert abs(world.object_px[0]) < 0.7
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
+@pytest.mark.parametrize("name", ["v_mps", "omega_radps"])
+def test_absurd_speeds_change_nothing(name, bad):
+    one, other = calibrated(), calibrated()
+    one.tracker.handle(one.event("applied", Applied(**{name: bad})))
+    for _ in range(4):
+        assert one.frame(v=0.1) == other.frame(v=0.1)
+
+
+@pytest.mark.parametrize("name", ["object_u_px", "object_v_px"])
+def test_an_object_outside_of_any_image_is_not_seen(name):
+    world = calibrated()
+    t, view = world.now_ns, world.view()
+    setattr(view, name, 1e9)
+    world.tracker.handle(Event(t, "view", view, t))
+    outputs = world.tracker.handle(Event(t, "head", world.head_state(), t))
+    assert not next(output.message.visible for output in outputs if output.port == "percept")
+
+
+def test_an_object_found_without_its_edge_does_not_count_with_the_slope_of_before():
+    world = calibrated()
+    world.hidden = True
+    for _ in range(10):
+        world.frame()
+    world.hidden, world.edge_hidden = False, True
+    for _ in range(60):
+        assert not world.frame()[1].visible
+
+
 def test_a_lost_object_leaves_the_percept_as_it_was_but_not_visible():
     world = calibrated()
     _, before = world.frame()

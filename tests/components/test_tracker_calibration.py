@@ -137,7 +137,7 @@ def test_a_blink_during_the_steps_does_not_matter():
 def test_the_head_is_not_calibrated_while_the_robot_moves():
     world = World(d=2.0, alpha=0.1)
     for _ in range(60):
-        _, percept = world.frame(omega=0.02)
+        _, percept = world.frame(omega=0.004)
         assert percept.focal_px == 0.0
     percept = world.until(lambda percept: percept.visible, 60)
     assert percept.focal_px == pytest.approx(364.0, rel=0.015)

@@ -45,6 +45,11 @@ def test_the_search_never_moves_faster_than_its_rate_and_never_leaves_the_range(
     assert all(max(abs(b[0] - a[0]), abs(b[1] - a[1])) <= fastest for a, b in pairwise(aims))
 
 
+def test_the_sweep_begins_again_at_its_first_row_and_not_where_the_object_was_lost():
+    aims = searching(1000, tilt=57 * DEG)
+    assert max(aim[1] for aim in aims[150:]) < 51.1 * DEG
+
+
 def test_the_search_goes_on_for_ever():
     aims = searching(3000)
     assert len({aim[0] for aim in aims[-300:]}) > 50
