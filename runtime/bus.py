@@ -6,14 +6,18 @@ Peers listen on loopback and learn of one another from the router, so they form 
 from __future__ import annotations
 
 import json
+import os
 import socket
 from collections.abc import Callable
 
 import zenoh
 
+from runtime.foreign_thread import keep_thread_state
 from runtime.params import ConfigurationError
 
 LOOPBACK = "127.0.0.1"
+_THREADS = "(app:(worker_threads:1),rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app))"
+"""One thread for all of zenoh: fewer hops between threads, a fifth less processor time per message (measured)."""
 _READY = "@ready"
 """A verbatim chunk: `REALM/**` does not match it."""
 
@@ -77,10 +81,16 @@ def parse_ready_key(key: str) -> tuple[int, str, int]:
 
 def direct(receive: Callable[[zenoh.Sample], None]) -> zenoh.handlers.Callback[zenoh.Sample]:
     """Handler that is called on zenoh's own thread: no thread, no second queue in between."""
-    return zenoh.handlers.Callback(receive, indirect=False)
+
+    def call(sample: zenoh.Sample) -> None:
+        keep_thread_state()
+        receive(sample)
+
+    return zenoh.handlers.Callback(call, indirect=False)
 
 
 def _config(mode: str, *, listen: str, connect: str = "") -> zenoh.Config:
+    os.environ.setdefault("ZENOH_RUNTIME", _THREADS)  # read once, when the process opens its first session
     config = zenoh.Config()
     options: dict[str, object] = {
         "mode": mode,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zenoh
 
-from runtime.foreign_thread import ForeignThreads
 from runtime.inbox import Arrival, Box, Inbox, Notice
 from runtime.sequence import Sequences
 from runtime.wire import Refused, schema_name, unpack_stamp
@@ -48,7 +47,6 @@ class Door:
         """A door into an inbox, without any lane yet."""
         self._inbox = inbox
         self._lanes: dict[str, Lane] = {}
-        self._threads = ForeignThreads()
         self.refusals = Refusals()
 
     def add(self, full_key: str, lane: Lane) -> None:
@@ -63,7 +61,6 @@ class Door:
 
     def receive(self, sample: zenoh.Sample) -> None:
         """Check a sample and leave it in the inbox, or count it as refused."""
-        self._threads.keep()
         key = str(sample.key_expr)
         try:
             self._inbox.put(self._checked(key, sample))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from typing import Any
 
 from runtime.clock import SECOND_NS, FrameClock, PacedClock, Pacer, TickSchedule
@@ -20,6 +21,8 @@ HOLD_KEY = "supervisor/hold"
 _FUTURE_NS = SECOND_NS
 """Real time: a capture time further ahead than this is a lie."""
 _IDLE_NS = SECOND_NS
+_PATIENT_NS = 5_000_000
+"""Off the control path the inbox is looked into this often; a wake-up per message costs more than the message."""
 _SLICE_NS = 20_000_000
 """A paced frame waits in slices, so that a signal is seen between two."""
 
@@ -52,6 +55,7 @@ class Fold:
         self._ticks = TickSchedule(tick.hz) if isinstance(tick, Tick) else None
         stalls = self._lockstep and isinstance(hosted.inputs.get(STALL), Stall)
         self._stall_ns = round(system.stall_s * SECOND_NS) if stalls else None
+        self._patient = not is_on_control_path(hosted.outputs)
         self._decoders = self._subscribe()
 
     def _subscribe(self) -> dict[str, Decoder]:
@@ -97,13 +101,21 @@ class Fold:
         if now_ns >= self._status_due_ns:
             self._publish_status()
             self._status_due_ns = now_ns + SECOND_NS
-        entry = self._inbox.take(max(0, self._next_duty_ns(now_ns) - now_ns) / SECOND_NS)
+        entry = self._take(max(0, self._next_duty_ns(now_ns) - now_ns))
         if entry is None:
             self._check_stall()
         elif isinstance(entry, Arrival):
             self._receive(entry)
         else:
             self._notice(entry)
+
+    def _take(self, patience_ns: int) -> Arrival | Notice | None:
+        if not self._patient:
+            return self._inbox.take(patience_ns / SECOND_NS)
+        entry = self._inbox.take(0)
+        if entry is None:
+            time.sleep(min(patience_ns, _PATIENT_NS) / SECOND_NS)
+        return entry
 
     def _next_duty_ns(self, now_ns: int) -> int:
         """Monotonic time at which something must be done though nothing is received."""
@@ -200,6 +212,11 @@ class Fold:
 
     def _publish_status(self) -> None:
         self._station.outlets.status.put(self._station.status(self._hosted.handled), self._frames.now_ns)
+
+
+def is_on_control_path(outputs: Mapping[str, Port]) -> bool:
+    """Whether a component must answer each frame; one that need not may lag behind a little."""
+    return any(port.per_frame for port in outputs.values())
 
 
 def _cause(stamp: Any) -> tuple[int, int, int]:

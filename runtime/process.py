@@ -17,8 +17,8 @@ import traceback
 from runtime.assignment import Assignment
 from runtime.contract import ComponentError
 from runtime.hosted import Hosted
-from runtime.launch import class_of, params_of
-from runtime.live import Fold
+from runtime.launch import class_of, params_of, ports_of
+from runtime.live import Fold, is_on_control_path
 from runtime.params import ConfigurationError
 from runtime.station import Station, Stop
 from runtime.tap import Tap
@@ -28,6 +28,8 @@ _GRACE_S = 1.5
 """An orphan that has not ended by itself after this is ended hard."""
 _SWITCH_S = 0.0005
 """A message waits for Python's lock up to two switch intervals (measured); the default is 5 ms."""
+_BEHIND_NICE = 5
+"""Learner and recorder give way to the control path when the processor is short."""
 _PR_SET_PDEATHSIG = 1
 
 
@@ -54,6 +56,8 @@ def run_component(assignment: Assignment, stop: Stop) -> None:
     """Make the component and its shell, and run them to the end."""
     spec = assignment.system.component(assignment.name)
     run = new_run()
+    if not is_on_control_path(ports_of(spec.run).OUTPUTS):
+        os.nice(_BEHIND_NICE)
     kind = class_of(spec.run)
     if "cv2" in sys.modules:
         sys.modules["cv2"].setNumThreads(1)  # results must not depend on the number of cores
