@@ -32,7 +32,8 @@ class Task:
     goal_tilt_rad: float = between(58.1 * DEG, 0.0, 1.57)
     """Tilt when the object can be picked up. Ours: camera 0.45 m above the gripper point, which is 0.28 m ahead."""
     tilt_limit_rad: float = between(60.0 * DEG, 0.0, 1.57)
-    """Sink: closer than this. Ours: 0.26 m, two centimetres past the pick-up."""
+    """Sink: nearer to the edge than a robot that sees the object straight ahead at this tilt. Ours: 0.26 m from axle to
+    object, two centimetres past the pick-up."""
     start_tilt_min_rad: float = between(12.7 * DEG, 0.0, 1.57)
     """`reverse()` ends at a tilt drawn between this (2 m away) ..."""
     start_tilt_max_rad: float = between(24.2 * DEG, 0.0, 1.57)
@@ -55,6 +56,15 @@ class Task:
         if self.beta_reading == "arctan":
             return math.atan(slope)
         return math.atan2(slope, math.sin(max(tilt_rad, 1e-3)))
+
+    def is_too_close(self, slope: float, tilt_rad: float) -> bool:
+        """Whether the robot is nearer to the table's edge than `tilt_limit_rad` allows, however it stands to it.
+
+        Distance to the edge is distance to the object times cos(beta), so tan(tilt) / cos(beta) must not grow too
+        large; no length is needed.
+        """
+        beta_rad = math.atan2(slope, math.sin(max(tilt_rad, 1e-3)))
+        return math.tan(tilt_rad) > math.tan(self.tilt_limit_rad) * math.cos(beta_rad)
 
     def state(self, slope: float, pan_rad: float, tilt_rad: float) -> tuple[float, float]:
         """(beta, alpha) relative to the goal, which is (0, 0)."""

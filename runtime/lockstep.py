@@ -134,13 +134,13 @@ class Lockstep:
     def _hand(self, hosted: Hosted, event: Event) -> None:
         journal = self._journals[hosted.spec.name]
         name = f"{GONE}:{event.message}" if event.port == GONE else event.port
-        journal.add(name, event.source_run, event.sequence, event.time_ns, event.time_ns)
+        journal.add(name, event.source_run, event.sequence, event.time_ns, 0)
         samples = hosted.handle(event)
         if self.observe is not None:
             self.observe(hosted.spec.name, event, samples)
         for sample in samples:
             self._publish(sample)
-        if journal.is_due(self.time_ns):
+        if journal.is_due(0):  # virtual time needs no deadline, only a size
             self._publish_journal(hosted)
 
     def _publish(self, sample: Sample) -> None:
@@ -153,8 +153,7 @@ class Lockstep:
             self._publish(hosted.journal(batch, self.time_ns))
 
     def _finish(self) -> None:
-        """Hand everyone the last event; what they still say is recorded and read by nobody."""
-        self._heap.clear()
+        """Hand everyone the last event; what is still under way and what they still say is recorded, read by nobody."""
         self._readers.clear()
         for hosted in self._hosted:
             self._hand(hosted, Event(self.time_ns, STOP, capture_ns=self.time_ns))

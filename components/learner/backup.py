@@ -99,10 +99,13 @@ def sweep_by_priority(
     rate: Floats,
     image: Ints,
     priority: Floats,
+    columns: int,
+    reach: int,
 ) -> int:
     """Back up the pair of the largest priority, raise its predecessors', and so on (Moore and Atkeson 1993).
 
-    Finds the largest by looking at all: 2,000 numbers in a row cost less than a heap. Returns the backups made.
+    Finds the largest by looking at all: 2,000 numbers in a row cost less than a heap. A cell has `columns` cells in its
+    row; no pair leads further than `reach` cells. Returns the backups made.
     """
     actions = image.size
     cells = v.size - 1
@@ -120,18 +123,31 @@ def sweep_by_priority(
             copy_mirrored(cell, q, v, image)
             priority[(cells - 1 - cell) * actions + image[pair % actions]] = 0.0
         if change > 1e-6:
-            raise_predecessors(cell, change, successor, weight, degree, priority)
+            raise_predecessors(cell, change, successor, weight, degree, priority, columns, reach, actions)
             if mirror:
-                raise_predecessors(cells - 1 - cell, change, successor, weight, degree, priority)
+                raise_predecessors(
+                    cells - 1 - cell, change, successor, weight, degree, priority, columns, reach, actions
+                )
     return backups
 
 
 @njit(nogil=True, cache=True)
 def raise_predecessors(
-    cell: int, change: float, successor: Cells, weight: Floats, degree: Ints, priority: Floats
+    cell: int,
+    change: float,
+    successor: Cells,
+    weight: Floats,
+    degree: Ints,
+    priority: Floats,
+    columns: int,
+    reach: int,
+    actions: int,
 ) -> None:
     """A pair that leads to the cell is as urgent as the share of the cell's change that reaches it."""
-    for pair in range(degree.size):
-        for slot in range(degree[pair]):
-            if successor[pair, slot] == cell:
-                priority[pair] = max(priority[pair], weight[pair, slot] * change)
+    for row in range(-reach, reach + 1):
+        middle = (cell + row * columns) * actions
+        first, last = middle - reach * actions, middle + (reach + 1) * actions
+        for pair in range(max(0, first), min(degree.size, last)):
+            for slot in range(degree[pair]):
+                if successor[pair, slot] == cell:
+                    priority[pair] = max(priority[pair], weight[pair, slot] * change)

@@ -63,7 +63,7 @@ def percept_of(params: Params, grid: Grid, visible: bool, slope: float, pan_rad:
         cell=grid.cell(beta, alpha),
         beta_rad=beta,
         alpha_rad=alpha,
-        too_close=tilt_rad > params.task.tilt_limit_rad,
+        too_close=params.task.is_too_close(slope, tilt_rad),
     )
 
 

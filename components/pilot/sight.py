@@ -15,6 +15,8 @@ class Sight(NamedTuple):
     beta_rad: float = 0.0
     alpha_rad: float = 0.0
     tilt_rad: float = 0.0
+    too_close: bool = False
+    """To the table's edge."""
 
 
 UNSEEN = Sight(visible=False)
@@ -27,4 +29,10 @@ def sight_of(task: Task, visible: bool, slope: float, pan_rad: float, tilt_rad: 
     if not visible or not (abs(slope) < STEEPEST and abs(pan_rad) <= math.pi and 0.0 < tilt_rad < math.pi / 2):
         return UNSEEN
     beta, alpha = task.state(slope, pan_rad, tilt_rad)
-    return Sight(visible=True, beta_rad=beta, alpha_rad=alpha, tilt_rad=tilt_rad)
+    return Sight(
+        visible=True,
+        beta_rad=beta,
+        alpha_rad=alpha,
+        tilt_rad=tilt_rad,
+        too_close=task.is_too_close(slope, tilt_rad),
+    )

@@ -94,7 +94,7 @@ def _approach(rules: Rules, progress: Progress, frame: Frame) -> Step:
         return _ended(progress, failure)
     if not sight.visible:
         return _wait(rules, replace(progress, mode=int(Mode.WAIT), mode_began_ns=frame.time_ns), frame)
-    if sight.tilt_rad > rules.task.tilt_limit_rad:
+    if sight.too_close:
         return _ended(progress, Outcome.SINK)
     if rules.grid.cell(sight.beta_rad, sight.alpha_rad) != rules.grid.goal:
         return steer(rules, frame.table, progress, sight)

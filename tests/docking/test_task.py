@@ -34,3 +34,14 @@ def test_mirroring_swaps_the_actions():
     (v, left), (w, right) = Task().actions
     assert (v, left) == (w, -right)
     assert left > 0
+
+
+@given(st.floats(-1.2, 1.2), st.floats(0.2, 2.0))
+def test_too_close_is_a_distance_to_the_tables_edge_not_to_the_object(beta, d):
+    """A camera h above an object at distance d, seen at beta, is d cos(beta) from the line along the edge."""
+    task, height_m = Task(), 0.45
+    nearest_m = height_m / math.tan(task.tilt_limit_rad)
+    if abs(d * math.cos(beta) - nearest_m) < 1e-6:
+        return
+    tilt = math.atan2(height_m, d)
+    assert task.is_too_close(math.tan(beta) * math.sin(tilt), tilt) == (d * math.cos(beta) < nearest_m)

@@ -20,6 +20,7 @@ class Prioritised(MemorySweep):
     def __init__(self, task: Task, settings: Settings) -> None:
         super().__init__(task, settings)
         self.priority = np.zeros(self.q.size)
+        self._reach = self.grid.beta_cells if settings.hold_periods else settings.adjoining_cells
 
     def plan(self) -> None:
         """At most `settings.backups` backups."""
@@ -36,6 +37,8 @@ class Prioritised(MemorySweep):
             self.rate,
             self.image,
             self.priority,
+            self.grid.alpha_cells,
+            self._reach,
         )
 
     def _learn(self, transition: Transition) -> bool:
