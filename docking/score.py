@@ -83,6 +83,8 @@ class Scorer:
     def frame(self, frame: Frame) -> Trial | None:
         """Take one frame; returns the trial that ended with it, if one did."""
         self._count_collision(frame)
+        if frame.phase == "FINISHED":
+            return self._close(frame)
         before = self._ended.get(frame.phase, 0)
         self._ended[frame.phase] = frame.ended
         closed = self._close(frame) if frame.ended > before else None

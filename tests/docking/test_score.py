@@ -57,3 +57,8 @@ def test_a_trial_knows_where_and_when_it_began():
     assert trial.start == (0.3, 0.0, 1.7)
     assert (trial.began_s, trial.ended_s) == (0.0, 0.375)
     assert len(trial.path) == 3
+
+
+def test_the_last_trial_counts_once_though_the_session_finishes_with_it():
+    finished = {"phase": "FINISHED", "mode": "GRASP", "ended": 1, "outcome": "PICKED"}
+    assert len(run({}, GRASPING, finished, finished).trials) == 1
