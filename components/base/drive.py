@@ -54,7 +54,6 @@ class Drive:
             return None
         if time_ns - self.answers_ns > self.params.max_age_s * NS:
             return self._repeated(time_ns)
-        self.stopped_ns = None
         if self.guard and self.motion[:2] != (0.0, 0.0):
             return GUARD
         return BUMPER if self.bumper and self.motion.v_mps > 0.0 else None

@@ -5,15 +5,21 @@ from typing import NamedTuple
 
 from components.pilot.component import Pilot
 from docking import plant
+from docking.task import Task
 from runtime.contract import Event
 from schemas.drive_pb2 import BaseState, Drive
 from schemas.percept_pb2 import Percept
+from schemas.policy_pb2 import Policy
 from schemas.trial_pb2 import Trial
 
 HEIGHT_M = 0.45
 """Of the camera above the object; the goal's tilt is atan(0.45 / 0.28)."""
 PERIOD_NS = 125_000_000
 DEG = math.pi / 180
+TASK = Task(beta_cells=5, alpha_cells=5)
+FAR = (0.4, 0.3, math.atan2(HEIGHT_M, 1.5))
+AT_GOAL = (0.0, 0.0, Task().goal_tilt_rad)
+"""(beta, alpha, tilt)."""
 
 
 class Seen(NamedTuple):
@@ -72,3 +78,21 @@ def drive(params, seed, start, frames, *, noise_deg=0.0, generator=None, starts=
             return
         motion = (command.v_mps, command.omega_radps) if command.engaged else (0.0, 0.0)
         pose = plant.pose(*starts(trial.start)) if trial.place else plant.advance(*pose, *motion, 0.125)
+
+
+def policy(everywhere=0, **changes):
+    table = {
+        "version": 1, "beta_cells": 5, "alpha_cells": 5, "beta_range_rad": TASK.beta_range_rad,
+        "alpha_range_rad": TASK.alpha_range_rad, "action": bytes([everywhere]) * 25, "value": [0.0] * 25,
+        "action_v_mps": [0.1, 0.1], "action_omega_radps": [0.17, -0.17],
+    }  # fmt: skip
+    return Policy(**{**table, **changes})
+
+
+def tell(pilot, port, message, k=0):
+    return pilot.handle(Event(k * PERIOD_NS, port, message, k * PERIOD_NS))
+
+
+def answers(pilot, frames, look=FAR):
+    """(drive, trial) of each of these frames."""
+    return [frame(pilot, k, percept(*look))[:2] for k in frames]
