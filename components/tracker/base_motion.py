@@ -18,6 +18,8 @@ class Limits(NamedTuple):
 
 def ramp(rate: float, target: float, limit: float, dt_s: float) -> tuple[float, float]:
     """(rate, its integral) after dt_s of approaching a target at a constant acceleration `limit`."""
+    if rate == target:
+        return target, target * dt_s
     gap = target - rate
     ramp_s = min(abs(gap) / limit, dt_s)
     reached = target if abs(gap) <= limit * dt_s else rate + (limit if gap > 0.0 else -limit) * dt_s

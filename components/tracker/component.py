@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from components.tracker import ports
-from components.tracker.core import Aim, Seen, State, begun, follow
+from components.tracker.core import Aim, Seen, State, Tuning, begun, follow
 from components.tracker.join import Reading, Sight
 from components.tracker.snapshot import loaded, saved
 from runtime.contract import Event, Output
@@ -33,7 +33,7 @@ class Tracker:
 
     def __init__(self, params: ports.Params, seed: int) -> None:
         del seed  # nothing is random here
-        self._params = params
+        self._tuning = Tuning(params)
         self._latency_ns = round(params.base_latency_s * 1e9)
         self._state = begun(params)
 
@@ -49,7 +49,7 @@ class Tracker:
             state.join.reading(reading_of(event.message, event.capture_ns))
         outputs: list[Output] = []
         for sight, head in state.join.ready():
-            aim = follow(state, sight, head, self._params)
+            aim = follow(state, sight, head, self._tuning)
             outputs += self._outputs(aim, state.seen, sight.capture_ns)
         return tuple(outputs)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from components.tracker.base_motion import BaseMotion, Limits
 from components.tracker.calibration import Calibration
-from components.tracker.drift import Drift
+from components.tracker.drift import Drift, smoother
 from components.tracker.focal import Sample
 from components.tracker.gaze import direction, slope_at_centre
 from components.tracker.join import Join, Reading, Sight
@@ -68,14 +68,19 @@ def begun(params: Params) -> State:
     return state
 
 
-def limits_of(params: Params) -> Limits:
-    """Of the base."""
-    return Limits(params.base_acceleration_mps2, params.base_turn_acceleration_radps2)
+class Tuning:
+    """What follows from the parameters, made once."""
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.limits = Limits(params.base_acceleration_mps2, params.base_turn_acceleration_radps2)
+        self.smoother = smoother(params.drift_memory)
 
 
-def follow(state: State, sight: Sight, head: Reading, params: Params) -> Aim:
+def follow(state: State, sight: Sight, head: Reading, tuning: Tuning) -> Aim:
     """Take one frame, oldest first; the percept is then in `state.seen`."""
-    state.base.advance(sight.capture_ns, limits_of(params))
+    params = tuning.params
+    state.base.advance(sight.capture_ns, tuning.limits)
     state.seen.visible = False
     if not head.readable:
         return Aim(state.search.pan_rad, state.search.tilt_rad)
@@ -84,7 +89,7 @@ def follow(state: State, sight: Sight, head: Reading, params: Params) -> Aim:
     if not state.calibration.focal_px:
         return _calibrate(state, sight, head, params)
     _perceive(state, sight, head, params)
-    return _track(state, head, params)
+    return _track(state, head, tuning)
 
 
 def _lost(state: State, time_ns: int, params: Params) -> Aim:
@@ -121,9 +126,9 @@ def _perceive(state: State, sight: Sight, head: Reading, params: Params) -> None
     seen.visible = state.edge_known and state.edgeless_frames <= params.edge_memory_frames
 
 
-def _track(state: State, head: Reading, params: Params) -> Aim:
-    seen = state.seen
-    pan_rate_radps, tilt_rate_radps = _rates(state, params)
+def _track(state: State, head: Reading, tuning: Tuning) -> Aim:
+    seen, params = state.seen, tuning.params
+    pan_rate_radps, tilt_rate_radps = _rates(state, tuning)
     pan_error_rad = seen.bearing_rad - head.pan_rad
     tilt_error_rad = seen.depression_rad - head.tilt_rad
     pan = head.pan_rad + state.pan.correction_rad(pan_error_rad, params.pan_gain_p, params.pan_gain_d)
@@ -135,14 +140,14 @@ def _track(state: State, head: Reading, params: Params) -> Aim:
     return Aim(pan + pan_rate_radps * lag_s, tilt + tilt_rate_radps * lag_s, pan_rate_radps, tilt_rate_radps)
 
 
-def _rates(state: State, params: Params) -> tuple[float, float]:
+def _rates(state: State, tuning: Tuning) -> tuple[float, float]:
     """Mean rates (pan, tilt) of the object's direction until the next frame, as far as the base's commands tell."""
-    base = state.base
+    base, frame_s = state.base, tuning.params.frame_s
     way_m, state.way_m = base.way_m - state.way_m, base.way_m
-    state.pan_drift.update(state.seen.bearing_rad + base.heading_rad, way_m, params.drift_memory)
-    state.tilt_drift.update(state.seen.depression_rad, way_m, params.drift_memory)
-    next_m, turn_rad = base.ahead(params.frame_s, limits_of(params))
+    state.pan_drift.update(state.seen.bearing_rad + base.heading_rad, way_m, tuning.smoother)
+    state.tilt_drift.update(state.seen.depression_rad, way_m, tuning.smoother)
+    next_m, turn_rad = base.ahead(frame_s, tuning.limits)
     return (
-        (state.pan_drift.rad_per_m * next_m - turn_rad) / params.frame_s,
-        state.tilt_drift.rad_per_m * next_m / params.frame_s,
+        (state.pan_drift.rad_per_m * next_m - turn_rad) / frame_s,
+        state.tilt_drift.rad_per_m * next_m / frame_s,
     )

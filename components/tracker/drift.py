@@ -15,6 +15,15 @@ LARGEST_JUMP_RAD = 0.1
 """More than this between frames is no drift: the object or the robot was carried away."""
 
 
+def smoother(memory: float) -> GHFilter:
+    """The filter's gains.
+
+    Args:
+        memory: weight of an older measurement relative to the next newer one, 0..1.
+    """
+    return GHFilter(0.0, 0.0, 1.0, *critical_damping_parameters(memory))
+
+
 @dataclass
 class Drift:
     """A fading-memory filter of order 1 over the way driven: a g-h filter whose time is the way.
@@ -28,21 +37,21 @@ class Drift:
     """0 while unknown."""
     known: bool = False
 
-    def update(self, angle_rad: float, way_m: float, memory: float) -> None:
+    def update(self, angle_rad: float, way_m: float, smoother: GHFilter) -> None:
         """Take the angle measured after another `way_m`, the robot's own turns taken out.
 
         Args:
             angle_rad: measured.
             way_m: driven since the last measurement, signed.
-            memory: weight of an older measurement relative to the next newer one, 0..1.
+            smoother: the gains; it keeps nothing.
         """
         if self.known and abs(angle_rad - self.angle_rad) > LARGEST_JUMP_RAD:
             self.forget()
         if not self.known or abs(way_m) < SHORTEST_M:
             self.angle_rad, self.known = angle_rad, True
             return
-        g, h = critical_damping_parameters(memory)
-        angle, drift = GHFilter(self.angle_rad, self.rad_per_m, way_m, g, h).update(angle_rad)
+        smoother.x, smoother.dx, smoother.dt = self.angle_rad, self.rad_per_m, way_m
+        angle, drift = smoother.update(angle_rad)
         self.angle_rad, self.rad_per_m = angle, min(max(drift, -LARGEST_RAD_PER_M), LARGEST_RAD_PER_M)
 
     def forget(self) -> None:

@@ -8,13 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from components.tracker.base_motion import BaseMotion, Limits, ramp
-from components.tracker.drift import Drift
+from components.tracker.drift import Drift, smoother
 from components.tracker.gaze import direction, slope_at_centre
 from components.tracker.servo import Servo
 from docking import plant
 from docking.pinhole import Mount
 
 FOCAL = 364.0
+SMOOTHER = smoother(0.6)
 EDGE = np.array([-0.05, 0.0, -0.07])
 BETA, ALPHA, D = st.floats(-1.1, 1.1), st.floats(-1.3, 1.3), st.floats(0.3, 2.5)
 OFF = st.floats(-0.12, 0.12)
@@ -98,7 +99,7 @@ def test_the_drift_is_sine_alpha_over_distance_whatever_the_speed_and_the_turns(
     for _ in range(20):
         _, alpha, d = plant.observe(*pose)
         turned = pose[2] - plant.pose(0.3, 0.5, 1.5)[2]
-        drift.update(alpha + turned, v * 0.125, 0.6)
+        drift.update(alpha + turned, v * 0.125, SMOOTHER)
         pose = plant.advance(*pose, v, v / d * math.sin(alpha), 0.125)
     assert alpha == pytest.approx(0.5, abs=0.01)
     assert drift.rad_per_m == pytest.approx(math.sin(alpha) / d, rel=0.15)
@@ -107,18 +108,18 @@ def test_the_drift_is_sine_alpha_over_distance_whatever_the_speed_and_the_turns(
 def test_the_drift_stays_when_the_robot_stands_and_when_it_reverses():
     drift = Drift()
     for i in range(50):
-        drift.update(0.5 * 0.0125 * i, 0.0125, 0.6)
+        drift.update(0.5 * 0.0125 * i, 0.0125, SMOOTHER)
     before = drift.rad_per_m
     for _ in range(20):
-        drift.update(0.5 * 0.0125 * 49, 0.0, 0.6)
+        drift.update(0.5 * 0.0125 * 49, 0.0, SMOOTHER)
     assert drift.rad_per_m == before == pytest.approx(0.5, rel=1e-6)
-    drift.update(0.5 * 0.0125 * 48, -0.0125, 0.6)
+    drift.update(0.5 * 0.0125 * 48, -0.0125, SMOOTHER)
     assert drift.rad_per_m == pytest.approx(0.5, rel=1e-6)
 
 
 def test_a_jump_of_the_object_is_no_drift():
     drift = Drift()
     for i in range(20):
-        drift.update(0.5 * 0.0125 * i, 0.0125, 0.6)
-    drift.update(1.0, 0.0125, 0.6)
+        drift.update(0.5 * 0.0125 * i, 0.0125, SMOOTHER)
+    drift.update(1.0, 0.0125, SMOOTHER)
     assert drift.rad_per_m == 0.0
