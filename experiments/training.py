@@ -54,6 +54,8 @@ class Protocol:
     """Standard deviation of each sample's speed and turn rate, as a share of them."""
     percept_noise_rad: float = 0.0
     """Standard deviation of beta and alpha as the learner sees them."""
+    start_distances_m: tuple[float, float] = (1.0, 2.0)
+    """Training starts are uniform between these."""
     easy_minutes: float = 0.0
     """Learning from Easy Missions (Asada 1996): starts begin near the goal and reach the whole ranges so late."""
     cycle_after: tuple[str, ...] = ()
@@ -178,4 +180,5 @@ class Training:
         if self.protocol.easy_minutes > 0.0:
             scale = min(1.0, 0.1 + 0.9 * self.robot_s / (60.0 * self.protocol.easy_minutes))
         beta, alpha = scale * self.task.beta_range_rad, scale * self.task.alpha_range_rad
-        return self.rng.uniform((-beta, -alpha, 1.0), (beta, alpha, 2.0))
+        near, far = self.protocol.start_distances_m
+        return self.rng.uniform((-beta, -alpha, near), (beta, alpha, far))
