@@ -22,15 +22,17 @@ def report(file: FILE, output: OUTPUT = None, as_json: JSON = False) -> None:
 
 
 def write_report(file: Path, output: Path | None = None) -> tuple[Path, dict[str, int]]:
-    """Read the session and write its page; matplotlib is imported only here.
+    """Read the session and write its page; matplotlib and numba are imported only here.
 
     Raises:
         ConfigurationError: the file is no session of ours.
     """
+    from report.comparison import compare  # noqa: PLC0415
     from report.page import numbers, write  # noqa: PLC0415
     from report.session import read  # noqa: PLC0415
 
     page = output or file.with_suffix(".html")
     session = read(file)
-    write(session, page)
+    comparison = compare(session.policies, session.launch.get("task", {})) if session.policies else None
+    write(session, page, comparison)
     return page, dict(numbers(session))

@@ -84,15 +84,17 @@ class Scorer:
         """Take one frame; returns the trial that ended with it, if one did."""
         self._count_collision(frame)
         if frame.phase == "FINISHED":
-            return self._close(frame)
+            return None
         before = self._ended.get(frame.phase, 0)
         self._ended[frame.phase] = frame.ended
         closed = self._close(frame) if frame.ended > before else None
+        if closed is not None:
+            return closed
         if frame.mode in {"APPROACH", "SERVO", "GRASP"}:
             self._follow(frame)
         elif self._open is not None and frame.mode in {"REVERSE", "PLACE"}:
             self._open = None
-        return closed
+        return None
 
     def _count_collision(self, frame: Frame) -> None:
         self.collisions += frame.collided and not self._in_collision

@@ -11,12 +11,13 @@ import numpy as np
 
 from docking.score import Trial, outcomes
 from report import pictures
+from report.comparison import Comparison
 from report.session import Session, resolved
 
 _STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1f2328}
 h1{font-size:1.5rem;margin-bottom:0}h2{font-size:1.1rem;margin-top:2rem}
-img{max-width:100%;height:auto}table{border-collapse:collapse;margin:.5rem 0}
+img{max-width:100%;height:auto}img.half{width:49%;min-width:20rem}table{border-collapse:collapse;margin:.5rem 0}
 td,th{border-bottom:1px solid #d0d7de;padding:.25rem .8rem .25rem 0;text-align:left}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
 p.note{color:#57606a}pre{background:#f6f8fa;padding:.8rem;overflow-x:auto;font-size:12px}
@@ -24,18 +25,18 @@ p.note{color:#57606a}pre{background:#f6f8fa;padding:.8rem;overflow-x:auto;font-s
 """
 
 
-def write(session: Session, file: Path, comparison: Sequence[Sequence[str]] = ()) -> None:
+def write(session: Session, file: Path, comparison: Comparison | None = None) -> None:
     """Write the page.
 
     Args:
         session: from `report.session.read`.
         file: path of the page; replaced if it exists.
-        comparison: rows of the table that compares controllers on paired starts, the first one its head.
+        comparison: the session's policies beside other controllers, if there are policies.
     """
     file.write_text(_page(session, comparison), encoding="utf-8")
 
 
-def _page(session: Session, comparison: Sequence[Sequence[str]]) -> str:
+def _page(session: Session, comparison: Comparison | None) -> str:
     training = [trial for trial in session.trials if trial.phase == "TRAIN"]
     evaluation = [trial for trial in session.trials if trial.phase == "EVALUATE"]
     parts = [
@@ -44,12 +45,12 @@ def _page(session: Session, comparison: Sequence[Sequence[str]]) -> str:
         *_section("What became of the trials", _table(_outcome_rows(training, evaluation))),
     ]
     if training:
-        parts += _section("Learning", _img(pictures.learning_curve(training)))
-    if comparison:
-        parts += _section("The learned policy beside linear controllers, on the same starts", _table(comparison))
+        parts += _section("Training", _img(pictures.learning_curve(training)))
+    if comparison is not None:
+        parts += _compared(comparison)
     parts += _paths(session, training, evaluation)
     if session.policies:
-        parts += _section("What was learned", _img(pictures.policy_maps(session.policies[-1])))
+        parts += _section("What was learned", _img(pictures.policy_maps(session.policies[-1][1])))
     if session.pictures:
         parts += _section("What the robot saw", _img(pictures.camera_strip(session.pictures)))
     if session.tracking_px:
@@ -61,6 +62,15 @@ def _page(session: Session, comparison: Sequence[Sequence[str]]) -> str:
         "<meta name=viewport content='width=device-width,initial-scale=1'>"
         f"<title>{escape(session.file.stem)}</title><style>{_STYLE}</style><body>{''.join(parts)}</body></html>"
     )
+
+
+def _compared(comparison: Comparison) -> Iterable[str]:
+    note = (
+        f"<p class=note>On the bare plant, without camera, noise and latency, from {comparison.starts} seeded starts: "
+        "|beta| up to 45 deg, |alpha| up to 30 deg, 1.5 to 2 m. What the camera makes of it is in the trials above.</p>"
+    )
+    curve = _img(pictures.controllability(comparison.curve, comparison.ceiling_percent))
+    return _section("The frozen policy, minute by minute", note + curve + _table(comparison.rows))
 
 
 def _summary(session: Session) -> str:
@@ -82,7 +92,7 @@ def _paths(session: Session, training: list[Trial], evaluation: list[Trial]) -> 
         views.append(pictures.plan_view(training[-40:], offset_m, "the last 40 training trials"))
     if evaluation:
         views.append(pictures.plan_view(evaluation, offset_m, "evaluation, frozen policy"))
-    return _section("Paths, from above", "".join(_img(view) for view in views))
+    return _section("Paths, from above", "".join(_img(view, "half") for view in views))
 
 
 def _outcome_rows(training: list[Trial], evaluation: list[Trial]) -> list[list[str]]:
@@ -106,8 +116,8 @@ def _section(title: str, body: str) -> list[str]:
     return [f"<h2>{escape(title)}</h2>", body]
 
 
-def _img(png: bytes) -> str:
-    return f"<img alt='' src='data:image/png;base64,{base64.b64encode(png).decode()}'>"
+def _img(png: bytes, kind: str = "whole") -> str:
+    return f"<img class={kind} alt='' src='data:image/png;base64,{base64.b64encode(png).decode()}'>"
 
 
 def _table(rows: Sequence[Sequence[str]]) -> str:

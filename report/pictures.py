@@ -57,9 +57,19 @@ def learning_curve(trials: Sequence[Trial], window: int = 20) -> bytes:
     return _png(figure)
 
 
+def controllability(curve: Sequence[tuple[float, float]], ceiling_percent: float) -> bytes:
+    """Share of the starts from which the policy of each minute reaches the goal cell."""
+    figure, (axes,) = _figure(7.2, 2.8)
+    axes.plot(*zip(*curve, strict=True), color=COLOURS["docked"], marker="o", markersize=2.5, label="frozen policy")
+    axes.axhline(ceiling_percent, color="#57606a", linestyle="--", label="best that is possible")
+    axes.set(xlabel="robot minutes", ylabel="goal cell reached, %", ylim=(-3, 103), xlim=(0, None))
+    axes.legend(loc="lower right", frameon=False)
+    return _png(figure)
+
+
 def plan_view(trials: Sequence[Trial], edge_offset_m: float, title: str) -> bytes:
     """Paths of the axle seen from above; the object at the origin, the table ahead."""
-    figure, (axes,) = _figure(4.6, 4.4)
+    figure, (axes,) = _figure(4.6, 3.9)
     draw_table(axes, edge_offset_m)
     for trial in trials:
         kind = "docked" if trial.docked else "reached" if trial.reached else "failed"

@@ -39,8 +39,8 @@ class Session:
     tracking_px: list[float] = field(default_factory=list)
     """Residual of the can from the image centre, per visible frame."""
     bearing_error_rad: list[float] = field(default_factory=list)
-    policies: list[Policy] = field(default_factory=list)
-    """Last table, as it stood at the end of training."""
+    policies: list[tuple[float, Policy]] = field(default_factory=list)
+    """(robot seconds, table): the newest of each robot minute."""
     pictures: dict[str, bytes] = field(default_factory=dict)
     """Mode of the pilot -> the newest camera image in it."""
 
@@ -78,7 +78,7 @@ class _Reader:
         self._pairs: Pairs[Percept, Truth] = Pairs()
         self._image: Logged | None = None
         self._images: dict[str, Logged] = {}
-        self._policy: Logged | None = None
+        self._policies: dict[int, Logged] = {}
         self._keys = {str(session.launch.get(name, "")) for name in ("trial", "truth")}
 
     def read(self, recording: Recording) -> None:
@@ -90,14 +90,13 @@ class _Reader:
             elif logged.schema == "foxglove.CompressedImage":
                 self._image = logged
             elif logged.schema == "berth.Policy":
-                self._policy = logged
+                self._policies[logged.capture_ns // 60_000_000_000] = logged
             elif logged.schema == "berth.Percept":
                 self._compare(self._pairs.first(logged.capture_ns, logged.decoded()))
         session, scorer = self._session, self._board.scorer
         session.trials, session.collisions, session.robot_s = scorer.trials, scorer.collisions, self._board.robot_s
         session.pictures = {mode: logged.decoded().data for mode, logged in self._images.items()}
-        if self._policy is not None:
-            session.policies = [self._policy.decoded()]
+        session.policies = [(logged.capture_ns * 1e-9, logged.decoded()) for logged in self._policies.values()]
 
     def _count(self, logged: Logged) -> None:
         session, key = self._session, (logged.topic, logged.run)

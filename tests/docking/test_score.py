@@ -60,5 +60,5 @@ def test_a_trial_knows_where_and_when_it_began():
 
 
 def test_the_last_trial_counts_once_though_the_session_finishes_with_it():
-    finished = {"phase": "FINISHED", "mode": "GRASP", "ended": 1, "outcome": "PICKED"}
-    assert len(run({}, GRASPING, finished, finished).trials) == 1
+    last = {**GRASPING, "ended": 1, "outcome": "PICKED"}
+    assert len(run({}, GRASPING, last, {**last, "phase": "FINISHED"}, {**last, "phase": "FINISHED"}).trials) == 1
