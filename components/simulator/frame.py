@@ -12,7 +12,6 @@ from components.simulator.params import Params
 from components.simulator.sensor import Sensor
 from components.simulator.world import World
 from docking import plant
-from docking.pinhole import Array
 from runtime.contract import Output
 from schemas.drive_pb2 import BaseState
 from schemas.head_pb2 import HeadState
@@ -53,17 +52,9 @@ class Reporter:
     def _image(self, world: World, chance: np.random.Generator) -> CompressedImage:
         clean = self._painter.image(world.camera, world.object_m)
         image = CompressedImage(frame_id="camera", format="jpeg")
-        image.data = self._sensor.expose(clean, self._motion_px(world), chance)
+        image.data = self._sensor.expose(clean, self._params.exposure_s * world.image_motion_pxps, chance)
         image.timestamp.FromNanoseconds(world.time_ns)
         return image
-
-    def _motion_px(self, world: World) -> Array:
-        """Way during the exposure of the point in the image centre, as far away as the object; `[2]` px."""
-        camera, half_s = world.camera, 0.5 * self._params.exposure_s
-        range_m = float(np.linalg.norm(world.object_m - camera.position))
-        point_m = (camera.position + range_m * camera.axes[2])[None]
-        way = world.camera_after(half_s).project(point_m) - world.camera_after(-half_s).project(point_m)
-        return np.asarray(np.nan_to_num(way[0]))
 
     def _head(self, world: World, chance: np.random.Generator) -> HeadState:
         pan_rad, tilt_rad = (self._encoder(angle, chance) for angle in world.head.angles_rad)

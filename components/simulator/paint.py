@@ -20,7 +20,7 @@ NEAR_M = 0.05
 """Nothing nearer to the camera is drawn."""
 SHIFT = 4
 """Fractional bits of the corners: OpenCV draws at 1/16 px."""
-GUARD = 4.0
+GUARD = 16.0
 """Polygons are cut at this many half images from the centre: OpenCV's fixed-point corners overflow far outside."""
 TOP_LIGHT = 1.05
 

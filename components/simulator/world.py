@@ -80,15 +80,23 @@ class World:
     @property
     def camera(self) -> Camera:
         """The camera as it is now."""
-        return self.camera_after(0.0)
+        return self._mount.camera(self.base.pose.triple, *self.head.angles_rad, self._params.scaled_focal_px)
 
-    def camera_after(self, dt_s: float) -> Camera:
-        """The camera if everything moved on at its rates for `dt_s` (negative: back)."""
-        base, head = self.base, self.head
-        pose = plant.advance(*base.pose.triple, base.v_mps, base.omega_radps, dt_s)
-        return self._mount.camera(
-            pose,
-            head.pan.angle_rad + head.pan.rate_radps * dt_s,
-            head.tilt.angle_rad + head.tilt.rate_radps * dt_s,
-            self._params.scaled_focal_px,
+    @property
+    def image_motion_pxps(self) -> Array:
+        """Velocity in the image, (u, v) `[2]`, of the point at the image centre that is as far away as the object."""
+        camera, base, head = self.camera, self.base, self.head
+        right, down, _ = camera.axes
+        x_m, y_m, heading_rad = base.pose.triple
+        ahead_m, aside_m = camera.x_m - x_m, camera.y_m - y_m
+        velocity_mps = np.array(
+            (
+                base.v_mps * math.cos(heading_rad) - base.omega_radps * aside_m,
+                base.v_mps * math.sin(heading_rad) + base.omega_radps * ahead_m,
+                0.0,
+            )
         )
+        drift = velocity_mps / float(np.linalg.norm(self.object_m - camera.position))
+        yaw_rate_radps = base.omega_radps + head.pan.rate_radps
+        across = yaw_rate_radps * math.cos(camera.tilt_rad) - right @ drift
+        return camera.focal_px * np.array((across, -head.tilt.rate_radps - down @ drift))
