@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +15,7 @@ from docking.task import Task
 from experiments.evaluation import World, policy_times
 from experiments.rows import Row
 from experiments.scoring import Label, rows_of
-from experiments.starts import Starts
+from experiments.starts import DISTANCES_M, Starts
 from experiments.training import Checkpoint, Protocol
 
 Gains = tuple[float, float]
@@ -85,7 +85,12 @@ def law(gains: Gains, task: Task) -> Linear:
     return Linear(*gains, task.turn_rate_radps)
 
 
-def learned_rows(label: Label, times_s: NDArray[np.float64], checkpoint: Checkpoint) -> list[Row]:
+def learned_rows(
+    label: Label,
+    times_s: NDArray[np.float64],
+    checkpoint: Checkpoint,
+    distances_m: Sequence[float] = DISTANCES_M,
+) -> list[Row]:
     """Rows of a learned controller; their speed is that of the training, simulated and learned."""
     speed = checkpoint.driven_s / checkpoint.core_s if checkpoint.core_s > 0.0 else None
-    return [replace(row, robot_seconds_per_core_second=speed) for row in rows_of(label, times_s, 0.0)]
+    return [replace(row, robot_seconds_per_core_second=speed) for row in rows_of(label, times_s, 0.0, distances_m)]
