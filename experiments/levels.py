@@ -19,11 +19,15 @@ FAR = 1.0
 """Levels are cut off here."""
 
 
-@njit(nogil=True, cache=True)
-def goal_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
-    """At most 0 in the goal."""
-    if not limits.docking:
-        return max(abs(beta) / limits.beta_goal_rad, abs(alpha) / limits.alpha_goal_rad) - 1.0
+@njit(nogil=True, cache=True, error_model="numpy")
+def cell_level(limits: Limits, beta: float, alpha: float) -> float:
+    """At most 0 in the goal cell."""
+    return max(abs(beta) / limits.beta_goal_rad, abs(alpha) / limits.alpha_goal_rad) - 1.0
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def dock_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
+    """At most 0 where the gripper is at the object, within the tolerances."""
     if abs(d - limits.gripper_m) > 2.0 * limits.docked_m:  # the gripper is at least that far away
         return FAR
     heading = beta - alpha
@@ -32,7 +36,13 @@ def goal_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
     return min(FAR, max(math.hypot(x, y) / limits.docked_m, abs(heading) / limits.docked_rad) - 1.0)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
+def goal_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
+    """At most 0 in the goal."""
+    return dock_level(limits, beta, alpha, d) if limits.docking else cell_level(limits, beta, alpha)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
 def sink_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
     """Above 0 in the sink: outside the ranges, too close or too far."""
     return max(
@@ -43,7 +53,7 @@ def sink_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
     )
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
 def judge(limits: Limits, points: NDArray[np.float64]) -> NDArray[np.int8]:
     """[N] of points [N, 3]: 1 in the goal, -1 in the sink or not a number, else 0."""
     verdicts = np.zeros(len(points), np.int8)

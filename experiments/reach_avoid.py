@@ -42,7 +42,7 @@ class Ceiling:
         problem, actions = self.problem, np.array(self.problem.actions)
         chosen = fastest_actions(
             self.times_s,
-            *problem.nodes,
+            problem.nodes,
             problem.limits,
             problem.printed,
             actions,
@@ -67,12 +67,12 @@ class Ceiling:
         """
         if self.levels is None:
             raise ValueError("solve(problem, levels=True) computes levels")
-        found: Floats = look_up(self.levels, *self.problem.nodes, points_of(beta_rad, alpha_rad, d_m))
+        found: Floats = look_up(self.levels, self.problem.nodes, points_of(beta_rad, alpha_rad, d_m))
         return found
 
     def value_s(self, beta_rad: ArrayLike, alpha_rad: ArrayLike, d_m: ArrayLike) -> Floats:
         """Interpolated least time `[N]`, without driving; blurred near the edge of what is reachable."""
-        found: Floats = look_up(self.times_s, *self.problem.nodes, points_of(beta_rad, alpha_rad, d_m))
+        found: Floats = look_up(self.times_s, self.problem.nodes, points_of(beta_rad, alpha_rad, d_m))
         return found
 
 
@@ -93,6 +93,6 @@ def _values(problem: Problem, *, timed: bool) -> Floats:
     forwards = all(v > 0.0 for v, _ in problem.actions)
     passes = 60 if forwards else 2  # driving forwards a distance depends on nearer ones only: settle it before the next
     for _ in range(_SWEEPS):
-        if sweep(value, moves, beta, alpha, d, problem.limits, timed, dt, passes, 0.1 * _SETTLED) < _SETTLED:
+        if sweep(value, moves, problem.nodes, problem.limits, timed, dt, passes, 0.1 * _SETTLED) < _SETTLED:
             return value
     raise RuntimeError(f"values have not settled after {_SWEEPS} sweeps; larger backup_samples help: {problem}")

@@ -14,17 +14,19 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from experiments.levels import FAR, goal_level, sink_level
+from experiments.levels import FAR, cell_level, dock_level, goal_level, sink_level
 from experiments.problem import Limits
 from experiments.rollout import step
 
 Floats = NDArray[np.float64]
+Axes = tuple[Floats, Floats, Floats]
+"""Nodes in beta, alpha (rad) and d (m)."""
 
 LATE_S = 60.0
 """Time of a node from which the goal is not reached."""
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
 def moves_of(printed: bool, alpha: Floats, d: Floats, actions: Floats, dt: float) -> Floats:
     """(change of beta, alpha, d) after each action held for dt: [d nodes, alpha nodes, actions, 3]."""
     moves = np.empty((len(d), len(alpha), len(actions), 3))
@@ -36,7 +38,7 @@ def moves_of(printed: bool, alpha: Floats, d: Floats, actions: Floats, dt: float
     return moves
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
 def place(nodes: Floats, x: float) -> tuple[int, float]:
     """Index of the node below x and the share of the one above; the nearest end outside."""
     last = len(nodes) - 1
@@ -45,105 +47,101 @@ def place(nodes: Floats, x: float) -> tuple[int, float]:
     return below, position - below
 
 
-@njit(nogil=True, cache=True)
-def promised(limits: Limits, timed: bool, dt: float, onward: float, beta: float, alpha: float, d: float) -> float:
-    """Value of an action that lands at a point from which `onward` is the value."""
-    goal, sink = goal_level(limits, beta, alpha, d), sink_level(limits, beta, alpha, d)
+@njit(nogil=True, cache=True, error_model="numpy")
+def promised(timed: bool, dt: float, goal: float, sink: float, onward: float) -> float:
+    """Value of an action that lands at these levels, and from where `onward` is the value."""
     if not timed:
         return min(goal, max(sink, onward))
-    if goal <= 0.0:
-        return dt
-    return LATE_S if sink > 0.0 else dt + onward
+    return dt if goal <= 0.0 else LATE_S if sink > 0.0 else dt + onward
 
 
-@njit(nogil=True, cache=True)
-def lower(
-    best: Floats,
-    value: Floats,
-    beta: Floats,
-    alpha: Floats,
-    d: Floats,
-    move: Floats,
-    limits: Limits,
-    timed: bool,
-    dt: float,
-) -> None:
-    """Lower `best` [beta nodes] to what one action promises from one (alpha, d)."""
+@njit(nogil=True, cache=True, error_model="numpy")
+def goal_line(goal: Floats, limits: Limits, beta: Floats, shift: float, alpha: float, d: float) -> None:
+    """`goal_level` at beta + shift, into `goal` [beta nodes]: one branch outside the loop, so that it runs fast."""
+    if not limits.docking:
+        for b in range(len(beta)):
+            goal[b] = cell_level(limits, beta[b] + shift, alpha)
+    else:
+        for b in range(len(beta)):
+            goal[b] = dock_level(limits, beta[b] + shift, alpha, d)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def onward_line(onward: Floats, line: Floats, value: Floats, axes: Axes, move: Floats) -> None:
+    """Value where an action lands, from each beta of one (alpha, d), into `onward` [beta nodes]; `line` is scratch."""
+    beta, alpha, d = axes
     i, up = place(d, move[2])
     j, left = place(alpha, move[1])
     whole = math.floor(move[0] / (beta[1] - beta[0]))
     rest = move[0] / (beta[1] - beta[0]) - whole
-    near_right, near_left = value[i, j], value[i, j + 1]
-    far_right, far_left = value[i + 1, j], value[i + 1, j + 1]
-    weights = ((1.0 - up) * (1.0 - left), (1.0 - up) * left, up * (1.0 - left), up * left)
+    shares = ((1.0 - up) * (1.0 - left), (1.0 - up) * left, up * (1.0 - left), up * left)
+    near_right, near_left, far_right, far_left = value[i, j], value[i, j + 1], value[i + 1, j], value[i + 1, j + 1]
+    for b in range(len(beta)):
+        line[b] = (
+            shares[0] * near_right[b] + shares[1] * near_left[b] + shares[2] * far_right[b] + shares[3] * far_left[b]
+        )
     last = len(beta) - 1
     for b in range(len(beta)):
-        k, m = min(max(b + whole, 0), last), min(max(b + whole + 1, 0), last)
-        below = (
-            weights[0] * near_right[k]
-            + weights[1] * near_left[k]
-            + weights[2] * far_right[k]
-            + weights[3] * far_left[k]
-        )
-        above = (
-            weights[0] * near_right[m]
-            + weights[1] * near_left[m]
-            + weights[2] * far_right[m]
-            + weights[3] * far_left[m]
-        )
-        onward = (1.0 - rest) * below + rest * above
-        best[b] = min(best[b], promised(limits, timed, dt, onward, beta[b] + move[0], move[1], move[2]))
+        below, above = min(max(b + whole, 0), last), min(max(b + whole + 1, 0), last)
+        onward[b] = (1.0 - rest) * line[below] + rest * line[above]
 
 
-@njit(nogil=True, cache=True)
-def at_node(limits: Limits, timed: bool, best: float, beta: float, alpha: float, d: float) -> float:
-    """Value of a node whose best action promises `best`."""
-    goal = goal_level(limits, beta, alpha, d)
-    if timed:
-        return 0.0 if goal <= 0.0 else min(best, LATE_S)
-    return min(goal, best, FAR)
+@njit(nogil=True, cache=True, error_model="numpy")
+def lower(
+    best: Floats, scratch: Floats, value: Floats, axes: Axes, move: Floats, limits: Limits, timed: bool, dt: float
+) -> None:
+    """Lower `best` [beta nodes] to what one action promises from one (alpha, d); `scratch` is [3, beta nodes]."""
+    beta = axes[0]
+    goal, onward = scratch[0], scratch[1]
+    goal_line(goal, limits, beta, move[0], move[1], move[2])
+    onward_line(onward, scratch[2], value, axes, move)
+    for b in range(len(beta)):
+        sink = sink_level(limits, beta[b] + move[0], move[1], move[2])
+        best[b] = min(best[b], promised(timed, dt, goal[b], sink, onward[b]))
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
+def keep_line(line: Floats, best: Floats, goal: Floats, timed: bool) -> float:
+    """Put the values of one (alpha, d) into `line` [beta nodes]; the largest change."""
+    change = 0.0
+    for b in range(len(line)):
+        arrived = timed and goal[b] <= 0.0
+        new = 0.0 if arrived else min(best[b], LATE_S) if timed else min(goal[b], best[b], FAR)
+        change = max(change, abs(new - line[b]))
+        line[b] = new
+    return change
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
 def sweep(
-    value: Floats,
-    moves: Floats,
-    beta: Floats,
-    alpha: Floats,
-    d: Floats,
-    limits: Limits,
-    timed: bool,
-    dt: float,
-    passes: int,
-    settled: float,
+    value: Floats, moves: Floats, axes: Axes, limits: Limits, timed: bool, dt: float, passes: int, settled: float
 ) -> float:
     """Back up all nodes in place, each distance until it is `settled` or `passes` are done; the largest change."""
-    best = np.empty(len(beta))
+    beta, alpha, d = axes
+    best, scratch = np.empty(len(beta)), np.empty((3, len(beta)))
     largest = 0.0
     for i in range(len(d)):
         for turn in range(passes):
             change = 0.0
-            for step_j in range(len(alpha)):
-                j = step_j if turn % 2 == 0 else len(alpha) - 1 - step_j
+            for count in range(len(alpha)):
+                j = count if turn % 2 == 0 else len(alpha) - 1 - count
                 best[:] = np.inf
                 for action in range(moves.shape[2]):
-                    lower(best, value, beta, alpha, d, moves[i, j, action], limits, timed, dt)
-                for b in range(len(beta)):
-                    new = at_node(limits, timed, best[b], beta[b], alpha[j], d[i])
-                    change = max(change, abs(new - value[i, j, b]))
-                    value[i, j, b] = new
+                    lower(best, scratch, value, axes, moves[i, j, action], limits, timed, dt)
+                goal_line(scratch[0], limits, beta, 0.0, alpha[j], d[i])
+                change = max(change, keep_line(value[i, j], best, scratch[0], timed))
             largest = max(largest, change)
             if change < settled:
                 break
     return largest
 
 
-@njit(nogil=True, cache=True)
-def interpolated(value: Floats, beta: Floats, alpha: Floats, d: Floats, b: float, a: float, far: float) -> float:
+@njit(nogil=True, cache=True, error_model="numpy")
+def interpolated(value: Floats, axes: Axes, b: float, a: float, far: float) -> float:
     """Trilinear interpolation at (b, a, far)."""
-    k, along = place(beta, b)
-    j, left = place(alpha, a)
-    i, up = place(d, far)
+    k, along = place(axes[0], b)
+    j, left = place(axes[1], a)
+    i, up = place(axes[2], far)
     total = 0.0
     for corner in range(8):
         p, q, r = corner >> 2, (corner >> 1) & 1, corner & 1
@@ -152,34 +150,25 @@ def interpolated(value: Floats, beta: Floats, alpha: Floats, d: Floats, b: float
     return total
 
 
-@njit(nogil=True, cache=True)
-def look_up(value: Floats, beta: Floats, alpha: Floats, d: Floats, points: Floats) -> Floats:
+@njit(nogil=True, cache=True, error_model="numpy")
+def look_up(value: Floats, axes: Axes, points: Floats) -> Floats:
     """`interpolated` at points [N, 3]: [N]."""
-    return np.array([interpolated(value, beta, alpha, d, p[0], p[1], p[2]) for p in points])
+    return np.array([interpolated(value, axes, p[0], p[1], p[2]) for p in points])
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
 def fastest_actions(
-    times: Floats,
-    beta: Floats,
-    alpha: Floats,
-    d: Floats,
-    limits: Limits,
-    printed: bool,
-    actions: Floats,
-    dt: float,
-    points: Floats,
+    times: Floats, axes: Axes, limits: Limits, printed: bool, actions: Floats, dt: float, points: Floats
 ) -> NDArray[np.int64]:
     """Index of the action that promises the least time from each of points [N, 3], looking one dt ahead: [N]."""
     chosen = np.zeros(len(points), np.int64)
     for n in range(len(points)):
         least = np.inf
         for action in range(len(actions)):
-            b, a, far = step(
-                printed, points[n, 0], points[n, 1], points[n, 2], actions[action, 0], actions[action, 1], dt
-            )
-            onward = interpolated(times, beta, alpha, d, b, a, far)
-            time = promised(limits, True, dt, onward, b, a, far)
+            v, omega = actions[action]
+            b, a, d = step(printed, points[n, 0], points[n, 1], points[n, 2], v, omega, dt)
+            onward = interpolated(times, axes, b, a, d)
+            time = promised(True, dt, goal_level(limits, b, a, d), sink_level(limits, b, a, d), onward)
             if time < least:
                 least, chosen[n] = time, action
     return chosen

@@ -78,7 +78,7 @@ def test_interpolation_is_exact_on_functions_that_are_linear_along_each_axis() -
 
     value = np.array([[[trilinear(x, y, z) for z in beta] for y in alpha] for x in d])
     for b, a, far in np.random.default_rng(3).uniform((-1, -2, 0.2), (1, 2, 2.0), (50, 3)):
-        assert interpolated(value, beta, alpha, d, b, a, far) == pytest.approx(trilinear(far, a, b))
+        assert interpolated(value, (beta, alpha, d), b, a, far) == pytest.approx(trilinear(far, a, b))
 
 
 @pytest.mark.parametrize("actions", ["one-speed", "reverse"])
@@ -94,7 +94,7 @@ def test_values_are_the_fixed_point_that_a_textbook_loop_finds(actions: str, tim
     def promise(b: float, a: float, d: float, v: float, omega: float) -> float:
         b, a, d = step(False, b, a, d, v, omega, dt)
         goal, sink = goal_level(limits, b, a, d), sink_level(limits, b, a, d)
-        onward = interpolated(slow, *nodes, b, a, d)
+        onward = interpolated(slow, nodes, b, a, d)
         if not timed:
             return min(goal, max(sink, onward))
         return dt if goal <= 0 else LATE_S if sink > 0 else dt + onward
