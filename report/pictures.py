@@ -21,7 +21,7 @@ from schemas.policy_pb2 import Policy
 mpl.use("Agg")
 COLOURS = {"docked": "#1a7f37", "reached": "#1f6feb", "failed": "#cf222e"}
 """One colour per outcome, in every picture."""
-_STYLE: dict[Any, Any] = {
+STYLE: dict[Any, Any] = {
     "font.size": 9,
     "axes.grid": True,
     "grid.alpha": 0.25,
@@ -31,7 +31,7 @@ _STYLE: dict[Any, Any] = {
 
 
 def _figure(width: float, height: float, columns: int = 1) -> tuple[Figure, list[Axes]]:
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure, axes = plt.subplots(1, columns, figsize=(width, height), layout="constrained", squeeze=False)
     return figure, list(axes[0])
 
@@ -70,6 +70,13 @@ def controllability(curve: Sequence[tuple[float, float]], ceiling_percent: float
 def plan_view(trials: Sequence[Trial], edge_offset_m: float, title: str) -> bytes:
     """Paths of the axle seen from above; the object at the origin, the table ahead."""
     figure, (axes,) = _figure(4.6, 3.9)
+    draw_paths(axes, trials, edge_offset_m)
+    axes.set_title(title)
+    return _png(figure)
+
+
+def draw_paths(axes: Axes, trials: Sequence[Trial], edge_offset_m: float) -> None:
+    """Table, can and the path of every trial, coloured by what became of it."""
     draw_table(axes, edge_offset_m)
     for trial in trials:
         kind = "docked" if trial.docked else "reached" if trial.reached else "failed"
@@ -79,9 +86,8 @@ def plan_view(trials: Sequence[Trial], edge_offset_m: float, title: str) -> byte
             axes.plot(-y_m[0], x_m[0], "o", color=COLOURS[kind], markersize=2.5)
     for kind, colour in COLOURS.items():
         axes.plot([], [], color=colour, label=kind)
-    axes.set(xlim=(-1.7, 1.7), ylim=(-2.2, 0.45), xlabel="m", ylabel="m", title=title, aspect="equal")
-    axes.legend(loc="lower right", frameon=False)
-    return _png(figure)
+    axes.set(xlim=(-1.8, 1.8), ylim=(-2.6, 0.45), xlabel="m", ylabel="m", aspect="equal")
+    axes.legend(loc="lower center", ncols=3, frameon=False, columnspacing=1.0)
 
 
 def draw_table(axes: Axes, edge_offset_m: float) -> None:
@@ -93,25 +99,38 @@ def draw_table(axes: Axes, edge_offset_m: float) -> None:
 
 def policy_maps(policy: Policy) -> bytes:
     """Action and value of every cell."""
-    shape = (policy.beta_cells, policy.alpha_cells)
-    action = np.frombuffer(policy.action, np.int8).reshape(shape).astype(float)
-    action[action < 0] = np.nan
-    value = np.array(policy.value, float).reshape(shape)
-    value[np.isnan(action)] = np.nan
     figure, axes = _figure(7.6, 3.2, 2)
-    beta, alpha = math.degrees(policy.beta_range_rad), math.degrees(policy.alpha_range_rad)
-    box = (-alpha, alpha, -beta, beta)
-    colours = mpl.colors.ListedColormap(["#1f6feb", "#f2a33c"])
-    axes[0].imshow(action, origin="lower", extent=box, aspect="auto", cmap=colours, vmin=0, vmax=1)
+    draw_policy(axes[0], policy)
     axes[0].set_title("policy: blue = turn left, orange = turn right")
-    image = axes[1].imshow(value, origin="lower", extent=box, aspect="auto", cmap="viridis")
+    value = np.array(policy.value, float)
+    value[np.frombuffer(policy.action, np.int8) < 0] = np.nan
+    image = _draw_cells(axes[1], policy, value, "viridis", None)
     axes[1].set_title("value (300 = at the goal)")
     figure.colorbar(image, ax=axes[1])
-    for panel in axes:
-        panel.grid(visible=False)
-        panel.set(xlabel="alpha, bearing of the object, deg", ylabel="beta, deg")
-        panel.plot(0, 0, "+", color="white", markersize=9)
     return _png(figure)
+
+
+def draw_policy(axes: Axes, policy: Policy) -> None:
+    """Action of every cell; white where nothing is known."""
+    action = np.frombuffer(policy.action, np.int8).astype(float)
+    action[action < 0] = np.nan
+    _draw_cells(axes, policy, action, mpl.colors.ListedColormap(["#1f6feb", "#f2a33c"]), (0.0, 1.0))
+
+
+def _draw_cells(axes: Axes, policy: Policy, values: Any, colours: Any, limits: tuple[float, float] | None) -> Any:
+    beta, alpha = math.degrees(policy.beta_range_rad), math.degrees(policy.alpha_range_rad)
+    image = axes.imshow(
+        values.reshape(policy.beta_cells, policy.alpha_cells),
+        origin="lower",
+        extent=(-alpha, alpha, -beta, beta),
+        aspect="auto",
+        cmap=colours,
+        clim=limits,
+    )
+    axes.grid(visible=False)
+    axes.set(xlabel="alpha, bearing of the object, deg", ylabel="beta, deg")
+    axes.plot(0, 0, "+", color="white", markersize=9)
+    return image
 
 
 def camera_strip(pictures: Mapping[str, bytes]) -> bytes:
