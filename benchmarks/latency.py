@@ -42,6 +42,7 @@ class Bystander:
     def __init__(self, session: zenoh.Session, image: str, command: str, frame_of: Callable[[bytes], int]) -> None:
         """Subscribe to both keys; `frame_of` reads a frame's mark from an attachment."""
         self.image = b""
+        """The newest: in the first ones the head still searches."""
         self._frame_of = frame_of
         self._images: dict[int, int] = {}
         self._ages_ns: dict[int, int] = {}
@@ -52,7 +53,7 @@ class Bystander:
         now_ns = time.monotonic_ns()
         if sample.attachment is not None:
             self._images[self._frame_of(sample.attachment.to_bytes())] = now_ns
-            self.image = self.image or sample.payload.to_bytes()
+            self.image = sample.payload.to_bytes()
 
     def _see_command(self, sample: zenoh.Sample) -> None:
         now_ns = time.monotonic_ns()

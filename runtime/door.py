@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import zenoh
 
 from runtime.inbox import Arrival, Box, Inbox, Notice
@@ -48,6 +50,8 @@ class Door:
         self._inbox = inbox
         self._lanes: dict[str, Lane] = {}
         self.refusals = Refusals()
+        self.serve: Callable[[], None] | None = None
+        """Called after each arrival, on zenoh's thread; None = somebody looks into the inbox by himself."""
 
     def add(self, full_key: str, lane: Lane) -> None:
         """Let one key (with its realm) pass."""
@@ -64,6 +68,8 @@ class Door:
         key = str(sample.key_expr)
         try:
             self._inbox.put(self._checked(key, sample))
+            if self.serve is not None:
+                self.serve()
         except Refused as reason:
             self.refusals.add(key, reason)
         except Exception as failure:  # noqa: BLE001  (zenoh would swallow it)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
+from contextlib import suppress
 from queue import Empty, SimpleQueue
 from threading import Condition
 from typing import Any, NamedTuple
 
 from runtime.wire import Stamp
 
-BLOCK_S = 20.0
-"""Lockstep: how long a full queue holds its publisher back before the sample counts as lost."""
+BLOCK_S = 5.0
+"""Lockstep: how long a full queue holds its publisher back before the sample counts as lost; below zenoh's lease."""
 
 
 class Arrival(NamedTuple):
@@ -102,6 +103,7 @@ class Inbox:
     def __init__(self) -> None:
         """Nothing waits."""
         self._order: SimpleQueue[Box | Notice] = SimpleQueue()
+        self._bell: SimpleQueue[None] = SimpleQueue()
         self.boxes: list[Box] = []
 
     def box(self, name: str, limit: int, *, latest: bool = False, block: bool = False) -> Box:
@@ -118,6 +120,17 @@ class Inbox:
     def notify(self, notice: Notice) -> None:
         """Leave a notice; from any thread, and from a signal handler."""
         self._order.put(notice)
+        self._bell.put(None)
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait for a notice, not for samples: whoever brings a sample sees to it that it is taken."""
+        with suppress(Empty):
+            self._bell.get(timeout=timeout_s)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing waits."""
+        return self._order.empty()
 
     def take(self, timeout_s: float) -> Arrival | Notice | None:
         """The next sample or notice, or None if nothing came in time."""
@@ -126,6 +139,11 @@ class Inbox:
         except Empty:
             return None
         return entry.pop() if isinstance(entry, Box) else entry
+
+    def hold_back(self) -> None:
+        """From now on full boxes make their publishers wait: there is somebody who takes."""
+        for box in self.boxes:
+            box.block = not box.latest
 
     def shut(self) -> None:
         """Take nothing more and let go of whoever is blocked, for the end of a run."""

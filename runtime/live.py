@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from threading import Lock
 from typing import Any
 
 from runtime.clock import SECOND_NS, FrameClock, PacedClock, Pacer, TickSchedule
@@ -20,7 +21,7 @@ from schemas.session_pb2 import Hold
 HOLD_KEY = "supervisor/hold"
 _FUTURE_NS = SECOND_NS
 """Real time: a capture time further ahead than this is a lie."""
-_IDLE_NS = SECOND_NS
+_IDLE_NS = SECOND_NS // 20
 _PATIENT_NS = 5_000_000
 """Off the control path the inbox is looked into this often; a wake-up per message costs more than the message."""
 _SLICE_NS = 20_000_000
@@ -56,6 +57,13 @@ class Fold:
         stalls = self._lockstep and isinstance(hosted.inputs.get(STALL), Stall)
         self._stall_ns = round(system.stall_s * SECOND_NS) if stalls else None
         self._patient = not is_on_control_path(hosted.outputs)
+        self._turn = Lock()
+        """Held by the one thread that calls `handle`."""
+        self._open = False
+        """Whether samples may be handed over: between the start barrier and the stop."""
+        self._failure: BaseException | None = None
+        if not self._patient:
+            station.door.serve = self._serve_at_once
         self._decoders = self._subscribe()
 
     def _subscribe(self) -> dict[str, Decoder]:
@@ -64,10 +72,8 @@ class Fold:
         for name, key in self._station.spec.inputs.items():
             port: Port = self._hosted.inputs[name]
             box = self._inbox.box(name, port.queue, latest=port.queue == 1)
-            if self._lockstep:
-                box.block = True
-                if port.per_frame:
-                    box.latest, box.limit = False, max(port.queue, 16)
+            if self._lockstep and port.per_frame:
+                box.latest, box.limit = False, max(port.queue, 16)
             self._station.lane(box, key, port.schema, sources.get(key, ("", ""))[0])
             self._station.subscribe(key)
             decoders[name] = Decoder(port.schema)
@@ -82,18 +88,33 @@ class Fold:
         try:
             self._station.join()
             self._heard_ns = time.monotonic_ns()
-            if self._ticks is not None and self._lockstep and not self._station.stop.asked:
-                self._tick_up_to(0)
+            if self._lockstep:
+                self._inbox.hold_back()
+            with self._turn:
+                if self._ticks is not None and self._lockstep and not self._station.stop.asked:
+                    self._tick_up_to(0)
+            self._open = True
             while not self._station.stop.asked:
-                self._turn()
-            self._hand(self._own_event(STOP, self._now_ns()))
+                self._attend()
+            with self._turn:
+                self._hand(self._own_event(STOP, self._now_ns()))
         finally:
+            self._open = False
             self._flush_journal()
             self._publish_status()
             self._station.close()
 
-    def _turn(self) -> None:
+    def _attend(self) -> None:
+        """One round of the main thread: duties of time, then whatever waits, then a rest."""
+        with self._turn:
+            self._do_duties(time.monotonic_ns())
+        self._serve()
+        if self._failure is not None:
+            raise self._failure
         now_ns = time.monotonic_ns()
+        self._inbox.wait(max(0, self._next_duty_ns(now_ns) - now_ns) / SECOND_NS)
+
+    def _do_duties(self, now_ns: int) -> None:
         if not self._lockstep and self._ticks is not None:
             self._tick_up_to(self._clock.session_ns(now_ns))
         if self._journal.is_due(now_ns):
@@ -101,25 +122,40 @@ class Fold:
         if now_ns >= self._status_due_ns:
             self._publish_status()
             self._status_due_ns = now_ns + SECOND_NS
-        entry = self._take(max(0, self._next_duty_ns(now_ns) - now_ns))
-        if entry is None:
-            self._check_stall()
-        elif isinstance(entry, Arrival):
+        self._check_stall(now_ns)
+
+    def _serve_at_once(self) -> None:
+        """On zenoh's thread: hand over what it has just brought."""
+        try:
+            self._serve()
+        except BaseException as failure:  # noqa: BLE001  (zenoh would swallow it; the main thread raises it)
+            self._failure = failure
+            self._inbox.notify(Notice("wake"))
+
+    def _serve(self) -> None:
+        """Hand over what waits, unless another thread is at it: that one looks again after letting go."""
+        while self._may_serve() and self._turn.acquire(blocking=False):
+            try:
+                while self._may_serve() and (entry := self._inbox.take(0)) is not None:
+                    self._dispatch(entry)
+                if self._journal.is_due(time.monotonic_ns()):
+                    self._flush_journal()
+            finally:
+                self._turn.release()
+
+    def _may_serve(self) -> bool:
+        halted = self._failure is not None or self._station.stop.asked or not self._open
+        return not (halted or self._inbox.is_empty)
+
+    def _dispatch(self, entry: Arrival | Notice) -> None:
+        if isinstance(entry, Arrival):
             self._receive(entry)
         else:
             self._notice(entry)
 
-    def _take(self, patience_ns: int) -> Arrival | Notice | None:
-        if not self._patient:
-            return self._inbox.take(patience_ns / SECOND_NS)
-        entry = self._inbox.take(0)
-        if entry is None:
-            time.sleep(min(patience_ns, _PATIENT_NS) / SECOND_NS)
-        return entry
-
     def _next_duty_ns(self, now_ns: int) -> int:
         """Monotonic time at which something must be done though nothing is received."""
-        duty_ns = min(now_ns + _IDLE_NS, self._status_due_ns)
+        duty_ns = min(now_ns + (_PATIENT_NS if self._patient else _IDLE_NS), self._status_due_ns)
         journal_ns = self._journal.due_ns()
         if journal_ns is not None:
             duty_ns = min(duty_ns, journal_ns)
@@ -167,8 +203,7 @@ class Fold:
         self._holding = hold.active
         self._heard_ns = time.monotonic_ns()
 
-    def _check_stall(self) -> None:
-        now_ns = time.monotonic_ns()
+    def _check_stall(self, now_ns: int) -> None:
         if self._stall_ns is None or now_ns < self._heard_ns + self._stall_ns:
             return
         self._heard_ns = now_ns

@@ -44,7 +44,7 @@ class Tap:
         self._lockstep = system.clock == "lockstep"
         self._frames = FrameClock()
         self._clock = PacedClock(station.assignment.origin_ns, system.pace or 1.0)
-        box = station.inbox.box("bus", _QUEUE, block=self._lockstep)
+        box = station.inbox.box("bus", _QUEUE)
         for key, schema, publisher in known_keys(system):
             if publisher != station.spec.name:
                 station.lane(box, key, schema, publisher)
@@ -54,6 +54,8 @@ class Tap:
         """Pass the barrier, hand over messages until asked to stop, then wait for those still under way."""
         try:
             self._station.join()
+            if self._lockstep:
+                self._station.inbox.hold_back()
             while not self._station.stop.asked:
                 self._turn()
             self._hear_out()
