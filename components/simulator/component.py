@@ -7,8 +7,8 @@ import numpy as np
 from components.simulator import ports
 from components.simulator.base import Twist
 from components.simulator.commands import STALLS, Gate
-from components.simulator.messages import Placing, Reporter
 from components.simulator.head import Target
+from components.simulator.messages import Placing, Reporter
 from components.simulator.world import SUBSTEP_NS, World
 from docking.starts import start
 from runtime.contract import STALL, STOP, TICK, ComponentError, Event, Output

@@ -60,6 +60,8 @@ def _check(data: bytes) -> tuple[int, int]:
     for _ in range(SEGMENTS_MAX):
         marker, length = _segment(data, at)
         if marker in FRAMES:
+            if size is not None:
+                raise JpegError("the JPEG has two frame headers")
             size = _frame(data, at, marker)
         at += 2 + length
         if marker == SCAN:
