@@ -1,11 +1,12 @@
-"""Sessions that several tests look at: made once for each test process."""
+"""Hypothesis: the same cases on every run, without deadlines (a busy machine is no bug).
 
-import pytest
+`HYPOTHESIS_PROFILE=explore pytest` looks for new ones.
+"""
 
-from tests.recorded_session import Twins, make_twins
+import os
 
+from hypothesis import settings
 
-@pytest.fixture(scope="session")
-def twins(tmp_path_factory) -> Twins:
-    """One learning session with a docking, made twice, and the beginning of one with another seed."""
-    return make_twins(tmp_path_factory.mktemp("twins"))
+settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("explore", deadline=None, max_examples=1000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))

@@ -197,7 +197,7 @@ def ring_shares(rows: float, columns: float, reach: int) -> Shares:
     other = rows if along_columns else columns
     outward = int(math.copysign(reach, columns if along_columns else rows))
     low = min(math.floor(abs(other)), reach - 1)
-    share = abs(other) - low
+    share = min(1.0, abs(other) - low)  # rounding may carry it past the corner
     sign = int(math.copysign(1, other))
     near, far = sign * low, sign * (low + 1)
     if along_columns:
