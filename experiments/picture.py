@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -24,12 +24,19 @@ _STYLE = {
 
 
 def picture(
-    path: Path, paint: Callable[[list[Axes]], None], *, rows: int = 1, columns: int = 1, height_in: float = 4.0
+    path: Path,
+    paint: Callable[[list[Axes]], None],
+    *,
+    rows: int = 1,
+    columns: int = 1,
+    height_in: float = 4.0,
+    heights_in: Sequence[float] | None = None,
 ) -> Path:
     """Make a figure of rows by columns axes, let `paint` fill them (row by row), save it as PNG; returns its path."""
     with mpl.rc_context(_STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(WIDTH_IN, height_in * rows), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False)
+        heights = heights_in or [height_in] * rows
+        figure = Figure(figsize=(WIDTH_IN, sum(heights)), layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False, height_ratios=heights)
         paint(list(axes.flat))
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, metadata={"Software": None})
