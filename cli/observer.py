@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import zenoh
 
-from runtime.bus import direct, open_observer, parse_ready_key, ready_keys
+from runtime.bus import direct, open_observer
+from runtime.presence import STARTS, Presence, watch
 from runtime.runfile import Run
 from runtime.wire import Refused, Stamp, schema_name, unpack_stamp
 
@@ -72,9 +73,16 @@ def observe(run: Run, keys: str) -> Iterator[Observer]:
         yield observer
 
 
-def present(run: Run) -> list[str]:
-    """Components of a running system that have passed the start barrier."""
+def present(run: Run, timeout_s: float = 2.0) -> list[str]:
+    """Components of a running system that have passed the start barrier.
+
+    Args:
+        run: the system.
+        timeout_s: how long those that are not seen at once are looked for; links come up one by one.
+    """
+    presence = Presence(run.components)
     with open_observer(run.endpoint) as session:
-        replies = session.liveliness().get(ready_keys(run.realm), timeout=1.0)
-        tokens = [parse_ready_key(str(reply.ok.key_expr)) for reply in replies if reply.ok is not None]
-    return sorted({name for stage, name, _ in tokens if stage == 2})
+        watch(session, run.realm, presence, lambda *_: None, lambda _: None)
+        presence.wait(STARTS, timeout_s)
+        missing = presence.missing(STARTS)
+    return [name for name in run.components if name not in missing]
