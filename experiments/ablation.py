@@ -67,7 +67,7 @@ CASES: Mapping[str, Case] = {
     "process noise 0.2": Case({"process_noise": 0.2}),
     "no mirror": Case({"mirror": False}),
     "unknown is bad (-50)": Case({"unknown_value": -50.0}),
-    "too close is a sink": Case(protocol={"close_is_sink": True}),
+    "too close is a sink": Case({"too_close": "sink"}),
     "free reverse": Case(protocol={"reverse_s": 0.0}),
     "plant noise 10 %": Case(protocol={"plant_noise": 0.1}),
     "plant noise 30 %": Case(protocol={"plant_noise": 0.3}),

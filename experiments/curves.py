@@ -52,18 +52,19 @@ class Profile:
     task: Task
     distances_m: tuple[float, ...]
     start_distances_m: tuple[float, float]
-    close_is_sink: bool
+    too_close: str
+    """As in `Settings`."""
     plants: tuple[str, ...]
     learners: tuple[str, ...]
 
 
 PROFILES: Mapping[str, Profile] = {
-    "simulation": Profile(Task(), DISTANCES_M, (1.0, 2.0), False, ("geometric", "printed"), tuple(LEARNERS)),
+    "simulation": Profile(Task(), DISTANCES_M, (1.0, 2.0), "ignored", ("geometric", "printed"), tuple(LEARNERS)),
     "robot": Profile(
         replace(Task(), beta_cells=15, alpha_cells=15, turn_rate_radps=9 * DEG),
         (0.95,),
         (0.95, 0.95),
-        True,
+        "sink",
         ("geometric",),
         ("RL", "RL-LC", "RL, motion model", "RL-LC, motion model"),
     ),
@@ -113,12 +114,9 @@ def _ceiling(job: Job) -> list[Row]:
 def _curve(job: Job) -> list[Row]:
     profile, name, plant = PROFILES[str(job["profile"])], str(job["controller"]), str(job["plant"])
     learner, seed, noise = LEARNERS[name], int(job["seed"] or 0), float(job["noise"] or 0.0)
-    protocol = replace(
-        learner.protocol(plant, noise),
-        start_distances_m=profile.start_distances_m,
-        close_is_sink=profile.close_is_sink,
-    )
-    training = Training(profile.task, learner.settings, protocol, seed)
+    protocol = replace(learner.protocol(plant, noise), start_distances_m=profile.start_distances_m)
+    settings = replace(learner.settings, too_close=profile.too_close)
+    training = Training(profile.task, settings, protocol, seed)
     world, starts = World(profile.task, plant, noise, seed), protocol_starts(profile.task, profile.distances_m)
     rows = []
     for checkpoint in training.checkpoints(_minutes(job)):

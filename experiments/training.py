@@ -48,8 +48,6 @@ class Protocol:
     """Share of random actions in the trials of `lc`, `greedy` and `optimist`."""
     reverse_s: float = 10.0
     """Robot time that driving back costs."""
-    close_is_sink: bool = False
-    """Coming nearer than 0.2 m is punished like leaving the ranges; otherwise the trial only ends."""
     plant_noise: float = 0.0
     """Standard deviation of each sample's speed and turn rate, as a share of them."""
     percept_noise_rad: float = 0.0
@@ -124,8 +122,6 @@ class Training:
 
     def _learn(self, row: list[float]) -> None:
         cell, action, entered, periods, beta_change, alpha_change, near = row
-        if near and not self.protocol.close_is_sink:
-            return
         seen = Transition(
             cell=int(cell),
             action=int(action),

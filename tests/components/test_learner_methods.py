@@ -163,6 +163,13 @@ def test_a_transition_counts_if_the_cell_changes_by_exactly_k(reach, cell, after
     assert (method.transitions, method.dropped) == (int(counts), int(not counts))
 
 
+@pytest.mark.parametrize(("rule", "counts"), [("ignored", False), ("sink", True)])
+def test_coming_too_close_counts_only_where_it_is_called_a_sink(rule, counts):
+    method = make_method(TASK, Settings(too_close=rule))
+    assert method.observe(Transition(0, 0, SINK, 2.0, 0.01, 0.02, 2.0, too_close=True)) == counts
+    assert method.observe(Transition(0, 0, SINK, 2.0, 0.01, 0.02, 2.0))
+
+
 def test_with_a_fixed_hold_every_successor_counts_the_cell_itself_too():
     method = make_method(TASK, Settings(hold_periods=4, model="exits"))
     assert all(method.observe(Transition(0, 0, s, 4.0, 0.0, 0.0, 4.0)) for s in (0, 0, 0, 2, 10))

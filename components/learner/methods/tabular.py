@@ -54,8 +54,12 @@ class Tabular:
         """Improve the values from what is remembered; a fixed amount of work."""
 
     def counts(self, transition: Transition) -> bool:
-        """The adjoining property (eq. 5): the cell changed by exactly k. A sink or a fixed hold always counts."""
-        if transition.cell in (SINK, self.grid.goal):
+        """The adjoining property (eq. 5): the cell changed by exactly k. A sink or a fixed hold always counts.
+
+        Coming too close inside the ranges counts only if the settings call it a sink.
+        """
+        ignored = transition.too_close and self.settings.too_close == "ignored"
+        if ignored or transition.cell in (SINK, self.grid.goal):
             return False
         if self.settings.hold_periods or transition.next_cell == SINK:
             return True
