@@ -178,6 +178,13 @@ def test_a_trial_places_the_robot_at_its_start_once(kind):
     assert pose(after) != pose(placed)
 
 
+def test_a_placed_robot_forgets_the_commands_from_before():
+    simulator, first = begun(command_latency_s=0.5)
+    driving = frames(simulator, first, 3, drive=BaseCommand(v_mps=0.3))[-1]
+    placed = answer(simulator, driving[0].capture_ns, BaseCommand(v_mps=0.3), trial=Trial(place=True))
+    assert {pose(outputs) for outputs in frames(simulator, placed, 10)} == {pose(placed)}
+
+
 def test_the_next_trial_places_it_again():
     simulator, first = begun()
     places = [Trial(phase=1, number=number, place=True, start=number) for number in range(3)]
@@ -271,6 +278,14 @@ def test_same_seed_same_bytes():
 
 def test_another_seed_gives_another_world():
     assert not set(records(3)[::4]) & set(records(4)[::4])  # the images
+
+
+def test_chance_differs_from_seed_to_seed_and_from_frame_to_frame():
+    pans = set()
+    for seed in (3, 4):
+        simulator, first = begun(seed, encoder_step_rad=0.0)
+        pans |= {message(outputs, "head").pan_rad for outputs in frames(simulator, first, 5)}
+    assert len(pans) == 12
 
 
 def test_the_image_is_a_jpeg_of_its_size():

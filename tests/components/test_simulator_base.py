@@ -84,6 +84,13 @@ def test_the_table_stops_it_and_the_bumper_tells_until_it_backs_off():
     assert base.pose.x_m < -0.25
 
 
+def test_it_may_back_out_of_the_table():
+    base = Base(Params(), Pose(-0.15, 0.0, 0.0))
+    run(base, 3.0, Twist(-0.1, 0.0))
+    assert base.pose.x_m < -0.3
+    assert not base.bumper
+
+
 def test_it_may_turn_at_the_table():
     base = Base(Params(), Pose(-0.24, 0.0, 0.0))
     run(base, 3.0, Twist(0.1, 0.3))
