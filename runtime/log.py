@@ -7,11 +7,15 @@ Topic = key below the realm. One channel per topic and run id, whose MCAP `seque
 from __future__ import annotations
 
 import json
+import os
+import shutil
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
 from mcap.writer import CompressionType, Writer
 
+from runtime.contract import ComponentError
 from runtime.fingerprint import fingerprint
 from runtime.launch import System
 from runtime.messages import descriptor_set
@@ -26,10 +30,12 @@ _COMPRESSION = {"lz4": CompressionType.LZ4, "zstd": CompressionType.ZSTD, "none"
 
 
 class LogWriter:
-    """Writes one session.
+    """Writes one session. Whatever fails later, what was flushed before stays readable.
 
     Raises:
         ConfigurationError: the file exists already or can not be made.
+        ComponentError: from any method, once: the file can not be written any more. What is written after that is
+            dropped.
     """
 
     def __init__(
@@ -44,11 +50,21 @@ class LogWriter:
             chunk_bytes: size of an MCAP chunk.
             compression: lz4, zstd or none.
         """
+        self._file = file
         self._stream = _created(file)
+        self._newest_ns = 0
+        """Session time of the newest message."""
+        self._flushed_ns = 0
         self._writer = Writer(self._stream, chunk_size=chunk_bytes, compression=_COMPRESSION[compression])
-        self._writer.start(profile="", library=LIBRARY)
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int], int] = {}
+        try:
+            self._describe(system, started)
+        except OSError as error:
+            raise self._failed(error) from None
+
+    def _describe(self, system: System, started: str) -> None:
+        self._writer.start(profile="", library=LIBRARY)
         self._writer.add_metadata(
             SESSION,
             {
@@ -60,6 +76,7 @@ class LogWriter:
             },
         )
         self._writer.add_attachment(0, 0, LAUNCH, "application/json", system.text.encode())
+        self._stream.flush()
 
     def write(
         self, topic: str, schema: str, payload: bytes, run: int, sequence: int, capture_ns: int, time_ns: int
@@ -75,10 +92,14 @@ class LogWriter:
             capture_ns: capture time.
             time_ns: session time at reception.
         """
-        channel = self._channels.get((topic, run))
-        if channel is None:
-            channel = self._register(topic, schema, run)
-        self._writer.add_message(channel, max(time_ns, 0), payload, max(capture_ns, 0), sequence & 0xFFFFFFFF)
+        if self._stream.closed:
+            return
+        try:
+            channel = self._channels.get((topic, run)) or self._register(topic, schema, run)
+            self._writer.add_message(channel, max(time_ns, 0), payload, max(capture_ns, 0), sequence & 0xFFFFFFFF)
+        except OSError as error:
+            raise self._failed(error) from None
+        self._newest_ns = time_ns
 
     def _register(self, topic: str, schema: str, run: int) -> int:
         if schema not in self._schemas:
@@ -89,20 +110,48 @@ class LogWriter:
 
     def flush(self) -> None:
         """End the chunk and hand everything to the operating system."""
-        self._writer.flush()
-        self._stream.flush()
+        if self._stream.closed:
+            return
+        try:
+            self._writer.flush()
+            if os.fstat(self._stream.fileno()).st_nlink == 0:
+                raise self._vanished()
+        except OSError as error:
+            raise self._failed(error) from None
+        self._flushed_ns = self._newest_ns
 
     def close(self) -> None:
         """Finish the file. It may be called twice."""
-        if not self._stream.closed:
+        if self._stream.closed:
+            return
+        self.flush()
+        try:
             self._writer.finish()
             self._stream.close()
+        except OSError as error:
+            raise self._failed(error) from None
+
+    def _failed(self, error: OSError) -> ComponentError:
+        with suppress(OSError):  # what is left in the buffer has no room either
+            self._stream.close()
+        return ComponentError(
+            f"{self._file}: can not be written any more: {error.strerror}; it is kept up to "
+            f"{self._flushed_ns / 1e9:.3f} s, see `berth recover`"
+        )
+
+    def _vanished(self) -> ComponentError:
+        """Somebody has removed the file: its content is still there as long as we hold it open."""
+        self._stream.seek(0)
+        with _created(self._file) as rescued:
+            shutil.copyfileobj(self._stream, rescued)
+        self._stream.close()
+        return ComponentError(f"{self._file}: was removed while it was recorded; what it held was written there again")
 
 
 def _created(file: Path) -> IO[Any]:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        return file.open("xb")
+        return file.open("x+b")
     except FileExistsError:
         raise ConfigurationError(f"{file}: must not exist yet; a recording is never overwritten") from None
     except OSError as error:

@@ -6,8 +6,9 @@ from collections import OrderedDict
 
 from runtime.wire import Refused
 
-_RUNS = 8
-"""Runs remembered; a publisher has a new run id after each restart, and an old one never comes back."""
+_RUNS = 64
+"""Runs remembered, of all components where the publisher is not known; a restart has a new id, an old one never comes
+back."""
 
 
 class Sequences:

@@ -17,6 +17,7 @@ import zenoh
 from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import direct, free_endpoint, open_router, ready_key
 from runtime.child import Child
+from runtime.joining import describe
 from runtime.launch import ComponentSpec, System
 from runtime.live import HOLD_KEY
 from runtime.messages import message_class
@@ -147,6 +148,7 @@ class Supervisor:
         self._resources.callback(session.close)
         self._open_bus(session)
         self._origin_ns = time.monotonic_ns()
+        describe(self._run, Assignment(system, "", self._names, self._endpoint, self._origin_ns, started))
         for spec in self._specs:
             restarts = Restarts(spec.restart, spec.restart_limit)
             self._members.append(_Member(spec, restarts, self._spawn(spec, 0)))

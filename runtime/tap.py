@@ -19,6 +19,8 @@ from schemas.session_pb2 import Hold, Journal, Status
 _QUEUE = 4096
 """Samples that wait; at 3000 a second and 10 kB now and then this is a second and 5 MB."""
 _TICK_NS = SECOND_NS // 10
+_BUSY_NS = 20_000_000
+"""A bus that never falls silent must not keep the tap from its ticks: a recorder flushes by them."""
 _FAREWELL_S = 0.4
 """How long the last messages of the others are waited for after the stop."""
 _SLICE_S = 0.005
@@ -60,9 +62,14 @@ class Tap:
                 self._turn()
             self._hear_out()
         finally:
+            self._say_goodbye()
+
+    def _say_goodbye(self) -> None:
+        try:
             self._publish_status()
             for output in self._tap.close():
                 self._station.outlets.ports[output.port].put(output.message, self._frames.now_ns)
+        finally:
             self._station.close()
 
     def _hear_out(self) -> None:
@@ -83,8 +90,11 @@ class Tap:
         if now_ns >= self._status_due_ns:
             self._status_due_ns = now_ns + SECOND_NS
             self._publish_status()
-        while (entry := self._station.inbox.take(0)) is not None and not self._station.stop.asked:
+        until_ns = now_ns + _BUSY_NS
+        while time.monotonic_ns() < until_ns and (entry := self._station.inbox.take(0)) is not None:
             self._take(entry)
+            if self._station.stop.asked:
+                return
         time.sleep(_SLICE_S)
 
     def _now_ns(self) -> int:

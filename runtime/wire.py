@@ -56,7 +56,12 @@ def unpack_stamp(attachment: bytes) -> Stamp:
 
 def encoding_of(schema: type[Any]) -> str:
     """What a publisher says about its payload, e.g. `application/protobuf;berth.Percept`."""
-    return f"{_ENCODING}{schema.DESCRIPTOR.full_name}"
+    return encoding_of_name(schema.DESCRIPTOR.full_name)
+
+
+def encoding_of_name(full_name: str) -> str:
+    """The same for a schema's full name, e.g. of a message that this release does not know."""
+    return f"{_ENCODING}{full_name}"
 
 
 def schema_name(encoding: str) -> str:

@@ -1,0 +1,93 @@
+"""Hears a running system from outside: everything that its components say, and nothing of its own on the bus."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from types import TracebackType
+from typing import Self
+
+from runtime.bus import direct, open_observer, parse_ready_key, ready_keys
+from runtime.door import FAILURE, Door, Lane
+from runtime.inbox import Arrival, Inbox, Notice
+from runtime.presence import LISTENS, Presence, watch
+from runtime.runfile import Run
+from runtime.wire import encoding_of_name
+
+_QUEUE = 8192
+_SUPERVISOR = "supervisor"
+
+
+class Listener:
+    """A subscriber that joins late. Use as a context manager."""
+
+    def __init__(self, run: Run, keys: Collection[str], *, block: bool) -> None:
+        """Subscribe to some of a system's keys.
+
+        Args:
+            run: the running system.
+            keys: below the realm; each must be one of `run.topics`.
+            block: hold the publishers back rather than lose a message (lockstep).
+
+        Raises:
+            ConfigurationError: the system is not there any more.
+        """
+        self._inbox = Inbox()
+        self._door = Door(self._inbox)
+        self._presence = Presence((_SUPERVISOR,))
+        self._began = False
+        self._box = self._inbox.box("bus", _QUEUE, block=block)
+        self._session = open_observer(run.endpoint)
+        for key in keys:
+            encoding = encoding_of_name(run.topics[key])
+            self._door.add(f"{run.realm}/{key}", Lane(self._box, key, encoding, publisher=""))
+        for reply in self._session.liveliness().get(ready_keys(run.realm), timeout=1.0):
+            if reply.ok is not None:
+                _, name, number = parse_ready_key(str(reply.ok.key_expr))
+                self._door.announce(name, number, first=None)  # it has been talking before we came
+        watch(self._session, run.realm, self._presence, self._changed, self._failed)
+        for key in keys:
+            self._session.declare_subscriber(f"{run.realm}/{key}", direct(self._door.receive))
+
+    def _changed(self, appeared: bool, stage: int, name: str, run: int) -> None:
+        if appeared and stage == LISTENS:
+            self._door.announce(name, run, first=0)
+
+    def _failed(self, failure: BaseException) -> None:
+        self._inbox.notify(Notice(FAILURE, failure))
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the system has ended."""
+        there = bool(self._presence.runs(LISTENS, _SUPERVISOR))
+        self._began |= there
+        return self._began and not there
+
+    @property
+    def refused(self) -> int:
+        """Messages that were not to be believed."""
+        return self._door.refusals.count
+
+    @property
+    def dropped(self) -> int:
+        """Messages for which there was no room."""
+        return self._box.dropped
+
+    def take(self, timeout_s: float) -> Arrival | None:
+        """The next message, or None if nothing came in time."""
+        entry = self._inbox.take(timeout_s)
+        if isinstance(entry, Notice):
+            if entry.port == FAILURE:
+                raise entry.message
+            return None
+        return entry
+
+    def __enter__(self) -> Self:
+        """Listen."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave the bus."""
+        self._inbox.shut()
+        self._session.close()  # type: ignore[no-untyped-call]  # not annotated in zenoh's stubs
