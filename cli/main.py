@@ -70,13 +70,20 @@ def berth() -> None:
     """Let a mobile robot learn to dock at an object it sees."""
 
 
+_Complaint: Any = typer.BadParameter.__mro__[2]
+"""What typer raises about a command line; it has no public name of its own."""
+
+
 def main() -> None:
     """Run the command line; an error of the user is one line and exit code 2."""
     try:
-        typer.main.get_command(app)()
+        sys.exit(typer.main.get_command(app)(standalone_mode=False))
     except ConfigurationError as error:
         sys.stderr.write(f"berth: {error}\n")
-        sys.exit(2)
+    except _Complaint as complaint:
+        text = complaint.format_message()
+        sys.stderr.write(text + "\n" if "\n" in text else f"berth: {text}\n")  # no words at all: the whole help
+    sys.exit(2)
 
 
 if __name__ == "__main__":
