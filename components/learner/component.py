@@ -12,6 +12,7 @@ from components.learner.frame import Frame, Progress, action_of, percept_of
 from components.learner.holding import Holding
 from components.learner.join import Join
 from components.learner.methods import make_method
+from components.learner.transition import Transition
 from docking.arrays import pack, unpack
 from docking.cells import Grid
 from runtime.contract import STOP, Event, Output
@@ -95,13 +96,18 @@ class Learner:
             self._join.add(capture_ns, "action", action)
 
     def _learn(self, frame: Frame) -> Iterator[Output]:
-        transition = self._holding.feed(frame)
-        if transition is not None and self._method.observe(transition):
-            self._method.plan()
+        counted = [self._improve(transition) for transition in self._holding.feed(frame)]
+        if any(counted):
             self._version += 1
             yield Output("policy", self._policy(), frame.capture_ns)
         if self._is_due(frame.progress):
             yield from self._snapshot(frame.capture_ns)
+
+    def _improve(self, transition: Transition) -> bool:
+        counts = self._method.observe(transition)
+        if counts:
+            self._method.plan()
+        return counts
 
     def _is_due(self, progress: Progress) -> bool:
         """Whether enough trials have ended since the last snapshot, or the training just has."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from components.learner.ports import Params
 from docking.cells import SINK, Grid
@@ -47,6 +47,16 @@ class Frame(NamedTuple):
     progress: Progress
     action: int
     """Index of the action that was executed, or UNKNOWN_ACTION."""
+
+
+def frame_of(row: list[Any]) -> Frame:
+    """A frame out of nested lists, as JSON gives it back.
+
+    Raises:
+        TypeError, ValueError: it is nothing of the kind.
+    """
+    capture_ns, percept, progress, action = row
+    return Frame(int(capture_ns), Percept(*percept), Progress(*progress), int(action))
 
 
 UNSEEN = Percept(visible=False, cell=SINK, beta_rad=0.0, alpha_rad=0.0, too_close=False)

@@ -219,5 +219,5 @@ def test_with_a_delayed_and_noisy_robot_the_turn_rates_learned_are_the_true_ones
     tried = model.visits >= 3
     rates = model.mean[:, 1] / np.maximum(model.mean[:, 2], 1e-9) * (2 * TASK.alpha_range_rad / 15) / 0.125
     left, right = rates[0::2][tried[0::2]], rates[1::2][tried[1::2]]
-    assert np.median(left) == pytest.approx(-TASK.turn_rate_radps, rel=0.15)
-    assert np.median(right) == pytest.approx(TASK.turn_rate_radps, rel=0.15)
+    assert np.median(left) == pytest.approx(-TASK.turn_rate_radps, rel=0.08)
+    assert np.median(right) == pytest.approx(TASK.turn_rate_radps, rel=0.08)
