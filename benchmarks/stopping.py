@@ -54,11 +54,11 @@ def control_c() -> list[Figure]:
         kept = Recording(recording)
         *_, last = kept.messages({"base/actuate"})
         command = last.decoded()
-        holes = sum(topic.lost for topic in kept.topics())
+        missing = sum(topic.lost for topic in kept.topics()) if kept.whole() else _ABSENT
     return [
         Figure("Ctrl-C: all processes gone", stopped_s, "s", at_most=2.0),
         Figure("Ctrl-C: last command, speed", abs(command.v_mps) + abs(command.omega_radps), at_most=0.0),
-        Figure("Ctrl-C: messages missing in the recording", holes if kept.whole() else _ABSENT, at_most=0),
+        Figure("Ctrl-C: messages missing in the recording", missing, at_most=0),
         Figure("Ctrl-C: exit code", code, at_least=0, at_most=0),
     ]
 
@@ -84,8 +84,8 @@ def base_killed() -> list[Figure]:
     with driving() as (system, _):
         system.process.send_signal(signal.SIGSTOP)
         killed_ns = system.kill("base")
-        full_mps = system.seen.truths[-1].v_mps
         rests = wait_until(system.seen.rests, _REST_S)
+        full_mps = max(seen.v_mps for seen in system.seen.truths if seen.at_ns >= killed_ns)
         world = World()
         rest_s = (system.seen.rest_ns(killed_ns, world.acceleration_mps2) - killed_ns) / 1e9 if rests else _ABSENT
         system.process.send_signal(signal.SIGCONT)

@@ -60,6 +60,8 @@ def run(
         only=tuple(name for name in only.split(",") if name),
         recording=None if no_record else record or recording_name(launch, started),
     )
+    if system.recording is not None:
+        _check_recording(system.recording)
     with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
         watch = Watch(progress)
         failed, reason = _run(system, watch, started.isoformat(timespec="seconds"), duration, in_process=in_process)
@@ -68,6 +70,16 @@ def run(
         summary.report = _report(system.recording)
     _print(summary, as_json=as_json)
     raise typer.Exit(1 if failed else 0)
+
+
+def _check_recording(file: Path) -> None:
+    """Refuse at once what the recorder's process would refuse after the start."""
+    if file.exists():
+        raise ConfigurationError(f"{file}: must not exist yet; a recording is never overwritten")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigurationError(f"{file}: can not be made: {error.strerror}") from None
 
 
 def _run(system: System, watch: Watch, started: str, duration: float | None, *, in_process: bool) -> tuple[bool, str]:

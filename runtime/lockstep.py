@@ -90,10 +90,10 @@ class Lockstep:
             if not self._heap:
                 self._stall()
                 continue
-            time_ns, _, sample = heapq.heappop(self._heap)
-            if limit_ns is not None and time_ns > limit_ns:
+            if limit_ns is not None and self._heap[0][0] > limit_ns:
                 self.stop("duration")
                 break
+            time_ns, _, sample = heapq.heappop(self._heap)
             self.time_ns = max(self.time_ns, time_ns)
             self._deliver(sample)
         self._finish()

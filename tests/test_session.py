@@ -229,5 +229,9 @@ def test_a_session_ends_by_itself_and_says_so_once(messages):
 
 def test_duration_ends_a_session_in_robot_time(tmp_path):
     record(tmp_path / "short.mcap", duration_s=2.0)
-    stamps = [m.capture_ns for m in Recording(tmp_path / "short.mcap").messages({"camera/image"})]
-    assert stamps[-1] == 2 * SECOND_NS
+    stamps = defaultdict(list)
+    for logged in Recording(tmp_path / "short.mcap").messages():
+        stamps[logged.topic].append(logged.capture_ns)
+    assert stamps["tracker/percept"][-1] == 2 * SECOND_NS
+    shown = {tuple(stamps[f"simulator/{port}"]) for port in ("head", "base", "truth")}
+    assert shown == {tuple(stamps["camera/image"])}, "what was under way at the end is recorded, too"
