@@ -14,6 +14,7 @@ from rich.table import Table
 from benchmarks.figure import Figure
 
 BENCHMARKS = {
+    "render": "one camera frame: rendered, encoded, decoded, understood",
     "sweep": "the sweep kernel against C, and robot-seconds learned per core-second",
     "tracking": "error of the tracker and of the percept, in the loop with rendered images",
     "speed": "lockstep on the bus and in one process against real time",

@@ -32,15 +32,16 @@ def largest(mask: Mask, pool: int) -> Blob | None:
     """
     height, width = mask.shape
     pooled = cv2.resize(mask, (width // pool, height // pool), interpolation=cv2.INTER_AREA)
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(pooled, ltype=cv2.CV_16U)
-    if count < 2:
+    x0, y0, w0, h0 = cv2.boundingRect(pooled)
+    if w0 == 0:
         return None
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(pooled[y0 : y0 + h0, x0 : x0 + w0], ltype=cv2.CV_16U)
     label = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-    x, y, w, h = (int(value) for value in stats[label, :4])
-    kept = np.asarray(labels[y : y + h, x : x + w] == label, np.uint8)
-    kept = np.asarray(cv2.resize(kept, (w * pool, h * pool), interpolation=cv2.INTER_NEAREST), np.uint8)
-    left, top = x * pool, y * pool
-    patch = mask[top : top + h * pool, left : left + w * pool] * kept
+    x, y, w, h = stats[label, :4].tolist()
+    kept = np.uint8(255) * (np.asarray(labels)[y : y + h, x : x + w] == label)
+    whole = cv2.resize(kept, (w * pool, h * pool), interpolation=cv2.INTER_NEAREST)
+    left, top = (x0 + x) * pool, (y0 + y) * pool
+    patch = np.asarray(cv2.bitwise_and(mask[top : top + h * pool, left : left + w * pool], whole), np.uint8)
     return Blob(patch, left, top, cv2.countNonZero(patch))
 
 

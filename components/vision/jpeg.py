@@ -43,11 +43,14 @@ def decode(data: bytes, width_px: int, height_px: int) -> Image:
         raise JpegError("the JPEG can not be decoded") from error
     if image is None:
         raise JpegError("the JPEG is damaged or cut short")
-    tail = image[-TAIL_ROWS:]
     # libjpeg fills what is missing with one colour and says so on standard error only.
-    if (tail == tail[0, 0]).all():
+    if _one_colour(image[-1:]) and _one_colour(image[-TAIL_ROWS:]):
         raise JpegError("the last rows are of one colour: a damaged or an empty image")
     return np.asarray(image, np.uint8)
+
+
+def _one_colour(rows: cv2.typing.MatLike) -> bool:
+    return bool((rows == rows[0, 0]).all())
 
 
 def _check(data: bytes) -> tuple[int, int]:
