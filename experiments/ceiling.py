@@ -28,13 +28,15 @@ from experiments.starts import protocol_starts
 
 NAME = "ceiling"
 _CASES = (("geometric", "one-speed"), ("geometric", "two-speeds"), ("geometric", "reverse"), ("printed", "one-speed"))
-_FINE, _COARSE = (0.5 * DEG, 0.01), (1.0 * DEG, 0.0125)
+_FINE, _REVERSE, _REVERSE_DOCK = (0.5 * DEG, 0.01), (1.0 * DEG, 0.0125), (1.0 * DEG, 0.008)
+"""Steps of the nodes. Reversing settles slowly and loses nothing on coarse ones; beside the gripper's goal, where it
+can shuttle for ever on a blurred value, they are finer in d."""
 _BLUR_RAD = 1.25 * DEG
 """A backup should turn the robot at least so far, or interpolation blurs the edge."""
 
 
 def jobs(options: Options) -> Sequence[Job]:
-    """One for each plant and action set; reversing on coarser nodes, since it settles slowly and loses nothing."""
+    """One for each plant and action set."""
     return [
         {
             "plant": plant,
@@ -52,7 +54,8 @@ def jobs(options: Options) -> Sequence[Job]:
 def problem_of(job: Job) -> Problem:
     """The problem of a job."""
     turn_rate = float(job["turn_rate_radps"] or 0.0)
-    angle_step, distance_step = _COARSE if job["actions"] == "reverse" else _FINE
+    reverse_steps = _REVERSE_DOCK if job["goal"] == "dock" else _REVERSE
+    angle_step, distance_step = reverse_steps if job["actions"] == "reverse" else _FINE
     sampled = Problem()
     return Problem(
         plant=str(job["plant"]),

@@ -118,12 +118,11 @@ class Problem:
 
     @property
     def nodes(self) -> tuple[Floats, Floats, Floats]:
-        """Nodes in beta, alpha (rad) and d (m): uniform, from one end of the range to the other."""
+        """Nodes in beta, alpha (rad) and d (m): uniform over the ranges, one of them at beta = alpha = 0."""
         limits = self.limits
-        spans = (
-            (-limits.beta_range_rad, limits.beta_range_rad, self.angle_step_rad),
-            (-limits.alpha_range_rad, limits.alpha_range_rad, self.angle_step_rad),
-            (limits.d_min_m, limits.d_max_m, self.distance_step_m),
+        beta, alpha = (
+            np.linspace(-half, half, 2 * max(1, round(half / self.angle_step_rad)) + 1)
+            for half in (limits.beta_range_rad, limits.alpha_range_rad)
         )
-        beta, alpha, d = (np.linspace(low, high, round((high - low) / step) + 1) for low, high, step in spans)
-        return beta, alpha, d
+        steps = max(1, round((limits.d_max_m - limits.d_min_m) / self.distance_step_m))
+        return beta, alpha, np.linspace(limits.d_min_m, limits.d_max_m, steps + 1)
