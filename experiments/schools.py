@@ -73,7 +73,7 @@ def jobs(options: Options) -> Sequence[Job]:
     """One per plant, school and seed; the neural learner where its package is installed."""
     shared = {"longest": options.minutes, "noise": options.plant_noise}
     seeds, schools = options.seeds_or(SEEDS), [*SCHOOLS]
-    if importlib.util.find_spec("stable_baselines3") is not None:
+    if all(importlib.util.find_spec(name) for name in ("stable_baselines3", "experiments.neural")):
         schools.append(NEURAL)
     taught: list[Job] = [
         {"plant": plant, "school": school, "seed": seed, **shared}
