@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import copy
 import dataclasses
 import hashlib
 import importlib
@@ -158,6 +159,18 @@ def load(
     check_wiring(system)
     system = _selected(system, host, only, recording)
     return dataclasses.replace(system, text=_text(system, table))
+
+
+def resolve(table: Mapping[str, Any], file: str, overrides: Iterable[str] = ()) -> System:
+    """Check and resolve a table such as a launch file holds, or a part of one; its wiring is not looked at.
+
+    Raises:
+        ConfigurationError: as `load`.
+    """
+    own = copy.deepcopy(dict(table))
+    for override in overrides:
+        _override(own, override)
+    return _resolved(own, _table(own, "session", file, _SESSION), file)
 
 
 def _selected(system: System, host: str, only: Collection[str], recording: Path | None) -> System:

@@ -9,17 +9,15 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from google.protobuf.message import DecodeError
-from mcap.exceptions import McapError
-from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Attachment, Channel, Metadata, Schema
-from mcap.stream_reader import StreamReader
 
 from runtime.log import LAUNCH, SESSION
+from runtime.mcap_items import MAGIC, Fault, Item, RawMessage, items
 from runtime.messages import message_class
 from runtime.params import ConfigurationError
 
-_RECORD_LIMIT = 64 * 1024 * 1024
-"""No record of ours is larger; a hostile length must not ask for memory."""
+_HEAD_ITEMS = 16
+"""A session describes itself before its first message, in fewer items than this."""
 
 
 class Logged(NamedTuple):
@@ -52,6 +50,10 @@ class Topic:
     count: int
     bytes: int
     lost: int
+    gaps: int = 0
+    """Holes in the sequence; `lost` messages are missing in them."""
+    hz: float = 0.0
+    """Mean rate in session time; 0 if there is but one message."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,11 @@ class Recording:
     def __post_init__(self) -> None:
         """Refuse what is not MCAP at once."""
         with self._open() as stream:
-            if stream.read(8) != b"\x89MCAP0\r\n":
-                raise ConfigurationError(f"{self.file}: must be an MCAP file")
+            magic = stream.read(len(MAGIC))
+        if magic[:5] == MAGIC[:5] and magic[6:] == MAGIC[6:] and magic != MAGIC:
+            raise ConfigurationError(f"{self.file}: must be MCAP version 0; got version {magic[5:6]!r}")
+        if magic != MAGIC:
+            raise ConfigurationError(f"{self.file}: must be an MCAP file")
 
     def _open(self) -> IO[bytes]:
         try:
@@ -78,75 +83,103 @@ class Recording:
 
     def session(self) -> dict[str, str]:
         """Metadata of the session; empty in a file that is not ours."""
-        for record in self._first_records(Metadata):
-            if record.name == SESSION:
-                return dict(record.metadata)
+        for item in self._head():
+            if isinstance(item, Metadata) and item.name == SESSION:
+                return dict(item.metadata)
         return {}
 
     def launch(self) -> dict[str, Any]:
         """The resolved launch file; empty in a file that is not ours."""
-        for record in self._first_records(Attachment):
-            if record.name == LAUNCH:
-                table: dict[str, Any] = json.loads(record.data)
-                return table
+        for item in self._head():
+            if isinstance(item, Attachment) and item.name == LAUNCH:
+                try:
+                    table = json.loads(item.data)
+                except (ValueError, RecursionError):
+                    return {}
+                return table if isinstance(table, dict) else {}
         return {}
 
-    def _first_records(self, kind: type[Any]) -> Iterator[Any]:
-        """Records of one kind among the first few, which is where a session describes itself."""
-        with self._open() as stream:
-            try:
-                for index, record in enumerate(StreamReader(stream, record_size_limit=_RECORD_LIMIT).records):
-                    if isinstance(record, kind):
-                        yield record
-                    if index > 16:
-                        return
-            except (McapError, ValueError, EOFError):
+    def _head(self) -> Iterator[Item]:
+        for index, item in enumerate(self.items([], lambda _: False)):
+            if index > _HEAD_ITEMS or isinstance(item, Schema):
                 return
+            yield item
 
-    def messages(self, topics: Collection[str] | None = None) -> Iterator[Logged]:
+    def items(self, faults: list[Fault], wants: Any = None) -> Iterator[Item]:
+        """Everything in the file; see `runtime.mcap_items.items`."""
+        with self._open() as stream:
+            yield from items(stream, faults, wants)
+
+    def messages(self, topics: Collection[str] | None = None, faults: list[Fault] | None = None) -> Iterator[Logged]:
         """Messages in the order of the file; a torn tail ends it quietly (`whole` tells).
 
         Args:
             topics: keys below the realm to read; None = all.
+            faults: what is wrong with the file is appended.
         """
-        for schema, channel, record in self._records(topics):
-            yield Logged(
-                channel.topic,
-                schema.name if schema is not None else "",
-                record.data,
-                int(channel.metadata.get("run", "0"), 16),
-                record.sequence,
-                record.publish_time,
-                record.log_time,
-            )
-
-    def _records(self, topics: Collection[str] | None) -> Iterator[tuple[Schema | None, Channel, Any]]:
-        with self._open() as stream:
-            reader = SeekingReader(stream) if self.whole() else NonSeekingReader(stream, False, (), _RECORD_LIMIT)
-            try:
-                yield from reader.iter_messages(topics=topics, log_time_order=False)
-            except (McapError, EOFError):
-                return
+        wanted = None if topics is None else frozenset(topics)
+        schemas: dict[int, str] = {}
+        channels: dict[int, tuple[str, str, int]] = {}
+        wants = None if wanted is None else lambda channel: channel.topic in wanted
+        for item in self.items([] if faults is None else faults, wants):
+            if isinstance(item, RawMessage):
+                known = channels.get(item.channel)
+                if known is not None:
+                    topic, schema, run = known
+                    yield Logged(topic, schema, item.payload, run, item.sequence, item.publish_ns, item.log_ns)
+            elif isinstance(item, Schema):
+                schemas[item.id] = item.name
+            elif isinstance(item, Channel):
+                channels[item.id] = (item.topic, schemas.get(item.schema_id, ""), run_of(item))
 
     def whole(self) -> bool:
         """Whether the file was finished: it ends in MCAP's magic."""
         with self._open() as stream:
-            stream.seek(0, 2)
-            if stream.tell() < 16:
+            size = stream.seek(0, 2)
+            if size < 2 * len(MAGIC):
                 return False
-            stream.seek(-8, 2)
-            return stream.read(8) == b"\x89MCAP0\r\n"
+            stream.seek(-len(MAGIC), 2)
+            return stream.read(len(MAGIC)) == MAGIC
 
     def topics(self) -> list[Topic]:
         """What is in the file, per key and run, in order of appearance."""
-        counts: dict[tuple[str, int], list[int]] = {}
-        names: dict[tuple[str, int], str] = {}
-        for schema, channel, record in self._records(None):
-            key = (channel.topic, int(channel.metadata.get("run", "0"), 16))
-            names.setdefault(key, schema.name if schema is not None else "")
-            row = counts.setdefault(key, [0, 0, 0, record.sequence])
-            row[0] += 1
-            row[1] += len(record.data)
-            row[2] += max(0, record.sequence - row[3])
-            row[3] = record.sequence + 1
-        return [Topic(key[0], names[key], key[1], row[0], row[1], row[2]) for key, row in counts.items()]
+        tallies: dict[tuple[str, int], _Tally] = {}
+        for logged in self.messages():
+            key = (logged.topic, logged.run)
+            tally = tallies.get(key)
+            if tally is None:
+                tally = tallies[key] = _Tally(logged)
+            tally.add(logged)
+        return [tally.topic() for tally in tallies.values()]
+
+
+class _Tally:
+    """Counts the messages of one key and run."""
+
+    def __init__(self, first: Logged) -> None:
+        self._first, self._last = first, first
+        self._count = self._bytes = self._lost = self._gaps = 0
+        self._next = first.sequence
+
+    def add(self, logged: Logged) -> None:
+        self._count += 1
+        self._bytes += len(logged.payload)
+        hole = max(0, logged.sequence - self._next)
+        self._lost += hole
+        self._gaps += hole > 0
+        self._next = logged.sequence + 1
+        self._last = logged
+
+    def topic(self) -> Topic:
+        first = self._first
+        span_ns = self._last.time_ns - first.time_ns
+        hz = (self._count - 1) * 1e9 / span_ns if span_ns > 0 else 0.0
+        return Topic(first.topic, first.schema, first.run, self._count, self._bytes, self._lost, self._gaps, hz)
+
+
+def run_of(channel: Channel) -> int:
+    """Run id of a channel's publisher; 0 in a file that is not ours."""
+    try:
+        return int(channel.metadata.get("run", "0"), 16)
+    except ValueError:
+        return 0
