@@ -38,7 +38,7 @@ class Settings:
     too_close: str = one_of("ignored", "ignored", "sink")
     """What reaching the tilt limit inside the ranges teaches: nothing, or that it is a sink (section V, on the robot).
     The distance is hidden from the cells: the same cell further away is none, and calling it one costs 12 points of
-    controllability (measured, `berth experiment ablation`)."""
+    controllability (RL-LC, 40 robot-minutes, 12 seeds: 36 instead of 48 %)."""
     unknown_value: float = between(0.0, -1e6, 1e6)
     """Q of a (cell, action) never tried. 0 as in the paper; the goal's reward makes exploration optimistic."""
     advantage_scale: float = between(0.3, 0.01, 1.0)
