@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from runtime.clock import SECOND_NS, FrameClock, PacedClock
@@ -137,4 +137,13 @@ def known_keys(system: System) -> list[tuple[str, type[Any], str]]:
         outputs = ports_of(spec.run).OUTPUTS
         known += [(key, outputs[port].schema, spec.name) for port, key in spec.outputs.items()]
         known += [(f"{spec.name}/status", Status, spec.name), (f"{spec.name}/journal", Journal, spec.name)]
-    return known
+    return known + _from_elsewhere(system, {key for key, _, _ in known})
+
+
+def _from_elsewhere(system: System, known: Collection[str]) -> list[tuple[str, type[Any], str]]:
+    """What components of this system read that none of them publishes: another host's, or played from a log."""
+    found: dict[str, type[Any]] = {}
+    for spec in system.components:
+        inputs = ports_of(spec.run).INPUTS
+        found |= {key: inputs[port].schema for port, key in spec.inputs.items() if key not in known}
+    return [(key, schema, "") for key, schema in found.items()]

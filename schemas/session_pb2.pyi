@@ -83,3 +83,15 @@ class Hold(_message.Message):
     active: bool
     component: str
     def __init__(self, active: _Optional[bool] = ..., component: _Optional[str] = ...) -> None: ...
+
+class Playback(_message.Message):
+    __slots__ = ("epoch", "time_ns", "rate", "paused")
+    EPOCH_FIELD_NUMBER: _ClassVar[int]
+    TIME_NS_FIELD_NUMBER: _ClassVar[int]
+    RATE_FIELD_NUMBER: _ClassVar[int]
+    PAUSED_FIELD_NUMBER: _ClassVar[int]
+    epoch: int
+    time_ns: int
+    rate: float
+    paused: bool
+    def __init__(self, epoch: _Optional[int] = ..., time_ns: _Optional[int] = ..., rate: _Optional[float] = ..., paused: _Optional[bool] = ...) -> None: ...

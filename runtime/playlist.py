@@ -1,0 +1,102 @@
+"""What is to be played of a log: chosen topics of a stretch of time, under the names they shall have."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from runtime.params import ConfigurationError
+from runtime.recording import Logged, Recording
+from runtime.selection import Selection
+
+_SHELL = ("status", "journal")
+
+
+class Playlist:
+    """The messages of one log, in the order in which they were recorded."""
+
+    def __init__(
+        self,
+        recording: Recording,
+        selection: Selection,
+        remap: Mapping[str, str],
+        *,
+        start_s: float = 0.0,
+        duration_s: float | None = None,
+        owners: Collection[str] = (),
+    ) -> None:
+        """Choose.
+
+        Args:
+            recording: a session of ours, whole or torn.
+            selection: of its topics.
+            remap: topic -> key to play it on.
+            start_s: from the log's first message.
+            duration_s: from there; None = to the end.
+            owners: only what these components said on their output ports; empty = everybody, all.
+
+        Raises:
+            ConfigurationError: no session of ours, nothing left, two topics on one key.
+        """
+        self._recording = recording
+        launch = recording.launch()
+        if not recording.session() or not launch:
+            raise ConfigurationError(f"{recording.file}: must be a session recorded by berth")
+        self.launch: Mapping[str, Any] = launch
+        self._owners = _owners(launch)
+        schemas = {row.topic: row.schema for row in recording.topics()}
+        selection.check(schemas, str(recording.file))
+        wanted = [topic for topic in schemas if selection.takes(topic) and self._is_of(topic, owners)]
+        self._keys = {topic: remap.get(topic, topic) for topic in wanted}
+        self._check(remap, schemas, owners)
+        self.topics: dict[str, str] = {self._keys[topic]: schemas[topic] for topic in wanted}
+        """Key -> full name of its schema."""
+        first = next((logged.time_ns for logged in recording.messages()), 0)
+        self.start_ns = first + round(start_s * 1e9)
+        self._end_ns = None if duration_s is None else self.start_ns + round(duration_s * 1e9)
+
+    def _is_of(self, topic: str, owners: Collection[str]) -> bool:
+        return not owners or (self.owner(topic) in owners and topic.rpartition("/")[2] not in _SHELL)
+
+    def _check(self, remap: Mapping[str, str], known: Collection[str], owners: Collection[str]) -> None:
+        file = self._recording.file
+        for topic in remap:
+            if topic not in known:
+                raise ConfigurationError(f"--remap {topic}: must be a topic of {file}: {', '.join(known)}")
+        keys = list(self._keys.values())
+        twice = next((key for key in keys if keys.count(key) > 1), "")
+        if twice:
+            raise ConfigurationError(f"--remap: must not put two topics on one key; got {twice!r}")
+        for owner in owners:
+            if not any(self.owner(topic) == owner for topic in self._keys):
+                names = ", ".join(sorted({self.owner(topic) for topic in known}))
+                raise ConfigurationError(f"{file}: must hold messages of {owner}; it holds some of {names}")
+
+    def owner(self, topic: str) -> str:
+        """Component that published a topic of the log."""
+        return self._owners.get(topic, topic.partition("/")[0])
+
+    @property
+    def owners(self) -> dict[str, str]:
+        """Key to play on -> component that published it."""
+        return {key: self.owner(topic) for topic, key in self._keys.items()}
+
+    def messages(self, since_ns: int) -> Iterator[Logged]:
+        """The chosen messages from a time on, under their new keys."""
+        for logged in self._recording.messages(list(self._keys)):
+            if self._end_ns is not None and logged.time_ns > self._end_ns:
+                return
+            if logged.time_ns >= since_ns:
+                yield logged._replace(topic=self._keys[logged.topic])
+
+
+def _owners(launch: Mapping[str, Any]) -> dict[str, str]:
+    """Topic -> component, for the ports of a resolved launch file; of any release, so nothing is taken for granted."""
+    specs = launch.get("components")
+    rows = [row for row in specs if isinstance(row, dict)] if isinstance(specs, list) else []
+    return {
+        key: str(row.get("name", ""))
+        for row in rows
+        for key in (row["outputs"].values() if isinstance(row.get("outputs"), dict) else ())
+        if isinstance(key, str)
+    }
