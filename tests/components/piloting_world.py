@@ -13,13 +13,15 @@ from schemas.policy_pb2 import Policy
 from schemas.trial_pb2 import Trial
 
 HEIGHT_M = 0.45
-"""Of the camera above the object; the goal's tilt is atan(0.45 / 0.28)."""
+"""Of the camera above the object."""
 PERIOD_NS = 125_000_000
 DEG = math.pi / 180
 TASK = Task(beta_cells=5, alpha_cells=5)
 FAR = (0.4, 0.3, math.atan2(HEIGHT_M, 1.5))
 AT_GOAL = (0.0, 0.0, Task().goal_tilt_rad)
 """(beta, alpha, tilt)."""
+EXACT = Task(goal_tilt_rad=math.atan2(HEIGHT_M, 0.28))
+"""The goal as this plant shows it, which has no can with a nearer half."""
 
 
 class Seen(NamedTuple):

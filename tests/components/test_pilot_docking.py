@@ -7,7 +7,7 @@ import pytest
 
 from components.pilot.ports import Params
 from schemas.trial_pb2 import Trial
-from tests.components.piloting_world import DEG, drive
+from tests.components.piloting_world import DEG, EXACT, drive
 
 TRIALS = 100
 HOME = (0.3, 0.2, 1.7)
@@ -21,7 +21,8 @@ def demo_start(number):
 
 def evaluated(noise_deg=0.0, **changes):
     """The last frame of every evaluation trial."""
-    params = Params(train_s=0.0, evaluation_trials=TRIALS, evaluation_controller="lc", **{"pick_up": False, **changes})
+    changes = {"pick_up": False, **changes}
+    params = Params(task=EXACT, train_s=0.0, evaluation_trials=TRIALS, evaluation_controller="lc", **changes)
     ends, before = [], 0
     generator = np.random.default_rng(3)
     for seen in drive(params, 1, HOME, 60_000, noise_deg=noise_deg, generator=generator, starts=demo_start):
@@ -58,14 +59,14 @@ def test_of_a_law_that_comes_in_at_an_angle_steering_docks_all_and_driving_strai
 
 
 def test_every_trial_is_placed_once_at_its_own_start_with_the_robot_at_rest():
-    params = Params(train_s=0.0, evaluation_trials=5, evaluation_controller="lc", pick_up=False)
+    params = Params(task=EXACT, train_s=0.0, evaluation_trials=5, evaluation_controller="lc", pick_up=False)
     placed = [s for s in drive(params, 1, HOME, 5000, starts=demo_start) if s.trial.place]
     assert [s.trial.start for s in placed] == [s.trial.number for s in placed] == [0, 1, 2, 3, 4]
     assert all(s.trial.mode == Trial.PLACE and s.drive.v_mps == 0.0 == s.drive.omega_radps for s in placed)
 
 
 def test_the_session_ends_once_after_its_trials():
-    params = Params(train_s=5.0, evaluation_trials=3, evaluation_controller="lc", pick_up=False)
+    params = Params(task=EXACT, train_s=5.0, evaluation_trials=3, evaluation_controller="lc", pick_up=False)
     seen = list(drive(params, 1, HOME, 5000, starts=demo_start))
     phases = [s.trial.phase for s in seen]
     assert phases == sorted(phases)
@@ -77,7 +78,7 @@ def test_the_session_ends_once_after_its_trials():
 
 
 def test_a_trial_takes_its_modes_in_order():
-    params = Params(train_s=0.0, evaluation_trials=1, evaluation_controller="lc", pick_up=False)
+    params = Params(task=EXACT, train_s=0.0, evaluation_trials=1, evaluation_controller="lc", pick_up=False)
     seen = list(drive(params, 1, HOME, 5000, starts=lambda _: (0.2, 0.1, 1.8)))
     modes = [s.trial.mode for s in seen[:-1]]
     assert list(dict.fromkeys(modes)) == [Trial.PLACE, Trial.WAIT, Trial.APPROACH, Trial.SERVO]
@@ -87,14 +88,14 @@ def test_a_trial_takes_its_modes_in_order():
 
 
 def test_the_servo_never_drives_faster_than_the_task_says():
-    params = Params(train_s=0.0, evaluation_trials=4, evaluation_controller="lc", pick_up=False)
+    params = Params(task=EXACT, train_s=0.0, evaluation_trials=4, evaluation_controller="lc", pick_up=False)
     for s in drive(params, 1, HOME, 5000, starts=demo_start):
         assert abs(s.drive.v_mps) <= params.task.speed_mps
         assert abs(s.drive.omega_radps) <= params.task.turn_rate_radps
 
 
 def test_training_ends_a_trial_in_the_goal_cell_and_drives_back():
-    params = Params(train_s=1e6, controller="lc")
+    params = Params(task=EXACT, train_s=1e6, controller="lc")
     seen = list(drive(params, 1, (0.2, 0.1, 1.8), 400))
     end = next(i for i, s in enumerate(seen) if s.trial.ended == 1)
     assert seen[end].trial.outcome == Trial.REACHED
