@@ -66,6 +66,7 @@ def play(
     replaced = tuple(name for name in replace.split(",") if name)
     if replaced and loop:
         raise ConfigurationError("--loop must not be given with --replace: the running components can not go back")
+    run = find(realm) if replaced else None
     head = Playhead(0.0 if fast else rate, paused=paused)
     playlist = Playlist(
         Recording(file),
@@ -74,11 +75,10 @@ def play(
         start_s=start_offset,
         duration_s=duration,
         owners=replaced,
+        known=None if run is None else run.topics,
     )
-    if replaced:
-        table, failed = _played(_joined(playlist, head, find(realm), replaced))
-    else:
-        table, failed = _played(_own(playlist, head, file, realm, loop=loop))
+    opened = _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced)
+    table, failed = _played(opened)
     table["log_s"] = round((head.time_ns - playlist.start_ns) / 1e9, 3)
     sys.stdout.write(json.dumps(table) + "\n" if as_json else "".join(f"{k:12} {v}\n" for k, v in table.items()))
     raise typer.Exit(1 if failed else 0)
@@ -119,10 +119,10 @@ def _remap(pairs: list[str]) -> dict[str, str]:
 
 
 @contextmanager
-def _own(playlist: Playlist, head: Playhead, file: Path, realm: str, *, loop: bool) -> Iterator[Player]:
+def _own(playlist: Playlist, head: Playhead, realm: str, *, loop: bool) -> Iterator[Player]:
     """A player in a realm of its own."""
     realm = realm or f"replay/{playlist.launch.get('realm', 'unknown')}"
-    with own_stage(playlist, realm, str(file)) as stage:
+    with own_stage(playlist, realm) as stage:
         sys.stderr.write(f"playing {len(playlist.topics)} topics in realm {realm}\n")
         yield Player(playlist, stage, head, loop=loop)
 

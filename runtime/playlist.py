@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from runtime.params import ConfigurationError
@@ -24,6 +25,7 @@ class Playlist:
         start_s: float = 0.0,
         duration_s: float | None = None,
         owners: Collection[str] = (),
+        known: Collection[str] | None = None,
     ) -> None:
         """Choose.
 
@@ -34,6 +36,7 @@ class Playlist:
             start_s: from the log's first message.
             duration_s: from there; None = to the end.
             owners: only what these components said on their output ports; empty = everybody, all.
+            known: only keys that somebody listens to; None = all.
 
         Raises:
             ConfigurationError: no session of ours, nothing left, two topics on one key.
@@ -47,9 +50,10 @@ class Playlist:
         schemas = {row.topic: row.schema for row in recording.topics()}
         selection.check(schemas, str(recording.file))
         wanted = [topic for topic in schemas if selection.takes(topic) and self._is_of(topic, owners)]
-        self._keys = {topic: remap.get(topic, topic) for topic in wanted}
-        self._check(remap, schemas, owners)
-        self.topics: dict[str, str] = {self._keys[topic]: schemas[topic] for topic in wanted}
+        self._check(remap, schemas, wanted, owners)
+        keys = {topic: remap.get(topic, topic) for topic in wanted}
+        self._keys = {topic: key for topic, key in keys.items() if known is None or key in known}
+        self.topics: dict[str, str] = {key: schemas[topic] for topic, key in self._keys.items()}
         """Key -> full name of its schema."""
         first = next((logged.time_ns for logged in recording.messages()), 0)
         self.start_ns = first + round(start_s * 1e9)
@@ -58,23 +62,30 @@ class Playlist:
     def _is_of(self, topic: str, owners: Collection[str]) -> bool:
         return not owners or (self.owner(topic) in owners and topic.rpartition("/")[2] not in _SHELL)
 
-    def _check(self, remap: Mapping[str, str], known: Collection[str], owners: Collection[str]) -> None:
+    def _check(
+        self, remap: Mapping[str, str], known: Collection[str], wanted: Collection[str], owners: Collection[str]
+    ) -> None:
         file = self._recording.file
         for topic in remap:
             if topic not in known:
                 raise ConfigurationError(f"--remap {topic}: must be a topic of {file}: {', '.join(known)}")
-        keys = list(self._keys.values())
+        keys = [remap.get(topic, topic) for topic in wanted]
         twice = next((key for key in keys if keys.count(key) > 1), "")
         if twice:
             raise ConfigurationError(f"--remap: must not put two topics on one key; got {twice!r}")
         for owner in owners:
-            if not any(self.owner(topic) == owner for topic in self._keys):
+            if not any(self.owner(topic) == owner for topic in wanted):
                 names = ", ".join(sorted({self.owner(topic) for topic in known}))
                 raise ConfigurationError(f"{file}: must hold messages of {owner}; it holds some of {names}")
 
     def owner(self, topic: str) -> str:
         """Component that published a topic of the log."""
         return self._owners.get(topic, topic.partition("/")[0])
+
+    @property
+    def file(self) -> Path:
+        """Of the log."""
+        return self._recording.file
 
     @property
     def owners(self) -> dict[str, str]:

@@ -80,7 +80,7 @@ class Stage:
 
 
 @contextmanager
-def own_stage(playlist: Playlist, realm: str, file: str) -> Iterator[Stage]:
+def own_stage(playlist: Playlist, realm: str) -> Iterator[Stage]:
     """A realm with a router and a run file of its own, so that the commands that look at a system find it.
 
     Raises:
@@ -90,19 +90,19 @@ def own_stage(playlist: Playlist, realm: str, file: str) -> Iterator[Stage]:
     names = tuple(sorted(set(playlist.owners.values())))
     topics = {**playlist.topics, CLOCK_KEY: "berth.Playback"}
     endpoint = free_endpoint()
-    with claim(realm, endpoint, started, file, names, topics) as run, open_router(endpoint) as session:
-        system = _as_system(playlist, realm, file)
+    with claim(realm, endpoint, started, str(playlist.file), names, topics) as run, open_router(endpoint) as session:
+        system = _as_system(playlist, realm)
         describe(run, Assignment(system, "", names, endpoint, time.monotonic_ns(), started))
         token = session.liveliness().declare_token(ready_key(realm, LISTENS, _SUPERVISOR, new_run()))
         yield Stage(session, realm, {})
         token.undeclare()  # type: ignore[no-untyped-call]  # not annotated in zenoh's stubs
 
 
-def _as_system(playlist: Playlist, realm: str, file: str) -> System:
+def _as_system(playlist: Playlist, realm: str) -> System:
     """The played session, for whoever records it again: its time is what its messages say, as in lockstep."""
     seed = playlist.launch.get("seed")
     return System(
-        file=file,
+        file=str(playlist.file),
         realm=realm,
         clock="lockstep",
         pace=None,
