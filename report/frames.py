@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import math
+
 from docking.score import Frame, Scorer
 from docking.score import Trial as ScoredTrial
 from report.pairs import Pairs
 from schemas.trial_pb2 import Trial
 from schemas.truth_pb2 import Truth
+
+_PHASES, _MODES, _OUTCOMES = (frozenset(names.values()) for names in (Trial.Phase, Trial.Mode, Trial.Outcome))
+
+
+def is_sane(message: Trial | Truth) -> bool:
+    """Whether a message from the bus or a file can be scored: words that we know, numbers that are finite."""
+    if isinstance(message, Trial):
+        return message.phase in _PHASES and message.mode in _MODES and message.outcome in _OUTCOMES
+    return all(isinstance(value, bool) or math.isfinite(value) for _, value in message.ListFields())
 
 
 class Scoreboard:
@@ -20,7 +31,9 @@ class Scoreboard:
         self._pairs: Pairs[Trial, Truth] = Pairs()
 
     def take(self, message: Trial | Truth, capture_ns: int) -> ScoredTrial | None:
-        """Take one message; returns the trial that ended with it, if one did."""
+        """Take one message; returns the trial that ended with it, if one did. Nonsense changes nothing."""
+        if not is_sane(message):
+            return None
         self.robot_s = max(self.robot_s, capture_ns * 1e-9)
         if isinstance(message, Trial):
             self.trial = message

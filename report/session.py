@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from components.pilot.messages import table_of
 from docking.angles import wrap
 from docking.score import Trial
-from report.frames import Scoreboard
+from report.frames import Scoreboard, is_sane
 from report.pairs import Pairs
 from runtime.params import ConfigurationError
 from runtime.recording import Logged, Recording
@@ -91,12 +92,14 @@ class _Reader:
                 self._image = logged
             elif logged.schema == "berth.Policy":
                 self._policies[logged.capture_ns // 60_000_000_000] = logged
-            elif logged.schema == "berth.Percept":
-                self._compare(self._pairs.first(logged.capture_ns, logged.decoded()))
+            elif logged.schema == "berth.Percept" and (percept := logged.decoded()) is not None:
+                self._compare(self._pairs.first(logged.capture_ns, percept))
         session, scorer = self._session, self._board.scorer
         session.trials, session.collisions, session.robot_s = scorer.trials, scorer.collisions, self._board.robot_s
-        session.pictures = {mode: logged.decoded().data for mode, logged in self._images.items()}
-        session.policies = [(logged.capture_ns * 1e-9, logged.decoded()) for logged in self._policies.values()]
+        images = {mode: logged.decoded() for mode, logged in self._images.items()}
+        session.pictures = {mode: image.data for mode, image in images.items() if image is not None}
+        policies = [(logged.capture_ns * 1e-9, logged.decoded()) for logged in self._policies.values()]
+        session.policies = [(at_s, policy) for at_s, policy in policies if _is_policy(policy)]
 
     def _count(self, logged: Logged) -> None:
         session, key = self._session, (logged.topic, logged.run)
@@ -107,7 +110,7 @@ class _Reader:
 
     def _score(self, logged: Logged) -> None:
         message = logged.decoded()
-        if message is None:
+        if message is None or not is_sane(message):
             return
         self._board.take(message, logged.capture_ns)
         if isinstance(message, Truth):
@@ -119,9 +122,17 @@ class _Reader:
         if pair is None:
             return
         percept, truth = pair
-        if percept.visible:
+        if percept.visible and math.isfinite(percept.pan_rad):
             self._session.tracking_px.append(math.hypot(truth.object_u_px, truth.object_v_px))
             self._session.bearing_error_rad.append(abs(wrap(percept.pan_rad - truth.alpha_rad)))
+
+
+def _is_policy(message: Policy | None) -> bool:
+    """Whether a policy is one that the pilot would take."""
+    try:
+        return message is not None and table_of(message) is not None
+    except ValueError:
+        return False
 
 
 def resolved(session: Session) -> str:
