@@ -138,7 +138,10 @@ def test_base_stops_by_itself_when_another_is_killed(tmp_path, name):
         assert set(system.left()) == NAMES - {name}
         system.process.send_signal(signal.SIGCONT)
         ends_badly(system, name)
-    assert Recording(tmp_path / "live.mcap").whole()
+    recording = Recording(tmp_path / "live.mcap")
+    assert recording.whole()
+    reasons = {logged.decoded().commander for logged in recording.messages({"base/applied"})}
+    assert "gone" in reasons, "by liveliness, not for want of a command"
     last = commands(tmp_path / "live.mcap")[-1]
     assert (last.v_mps, last.omega_radps) == (0.0, 0.0)
 
