@@ -32,9 +32,9 @@ class Task:
     goal_tilt_rad: float = between(57.5 * DEG, 0.0, 1.57)
     """Tilt when the object can be picked up. Ours, as the simulated camera reads it with the gripper at its pose 0.28 m
     ahead: 0.6 deg less than atan(0.45 / 0.28), because the nearer half of a can takes more pixels than the other."""
-    tilt_limit_rad: float = between(60.0 * DEG, 0.0, 1.57)
-    """Sink: nearer to the edge than a robot that sees the object straight ahead at this tilt. Ours: 0.26 m from axle to
-    object, two centimetres past the pick-up."""
+    tilt_limit_rad: float = between(58.5 * DEG, 0.0, 1.57)
+    """Sink: nearer to the edge than a robot that sees the object straight ahead at this tilt. Ours: 0.276 m from axle to
+    object, which leaves the robot the 3.2 cm that it needs to stop from 0.1 m/s, and a centimetre more."""
     start_tilt_min_rad: float = between(12.7 * DEG, 0.0, 1.57)
     """`reverse()` ends at a tilt drawn between this (2 m away) ..."""
     start_tilt_max_rad: float = between(24.2 * DEG, 0.0, 1.57)

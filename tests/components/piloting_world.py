@@ -20,7 +20,7 @@ TASK = Task(beta_cells=5, alpha_cells=5)
 FAR = (0.4, 0.3, math.atan2(HEIGHT_M, 1.5))
 AT_GOAL = (0.0, 0.0, Task().goal_tilt_rad)
 """(beta, alpha, tilt)."""
-EXACT = Task(goal_tilt_rad=math.atan2(HEIGHT_M, 0.28))
+EXACT = Task(goal_tilt_rad=math.atan2(HEIGHT_M, 0.28), tilt_limit_rad=60 * DEG)
 """The goal as this plant shows it, which has no can with a nearer half."""
 
 

@@ -212,7 +212,7 @@ def test_with_a_delayed_and_noisy_robot_the_turn_rates_learned_are_the_true_ones
     """On average over the cells the bearing changes by the turn rate; half a frame of wrong motion would show."""
     params = dataclasses.replace(PARAMS, delay_samples=1)
     learner = Learner(params, 0)
-    for frame in session(TASK, 40, noise_rad=0.012, delay=1):
+    for frame in session(TASK, 120, noise_rad=0.012, delay=1):
         for event in frame:
             learner.handle(event)
     model = learner._method.model
