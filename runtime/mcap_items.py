@@ -24,6 +24,8 @@ LARGEST_BYTES = 64 * 1024 * 1024
 """Of one record or one unpacked chunk. No record of ours is larger; a hostile length must not ask for memory."""
 _FAULTS_KEPT = 100
 _FRAME = struct.Struct("<BQ")
+_HEAD = struct.Struct("<BQH")
+"""A frame and, if it is a message's, its channel: most messages are passed over after that."""
 _MESSAGE = struct.Struct("<HIQQ")
 _PARSED: dict[int, Any] = {
     int(Opcode.HEADER): Header,
@@ -145,20 +147,21 @@ def _described(code: int, content: bytes, channels: _Channels) -> Item:
 
 
 def _chunk_items(data: bytes, channels: _Channels) -> Iterator[Item]:
-    at, end = 0, len(data)
+    at, end, unwanted, head = 0, len(data), channels.unwanted, _HEAD
     while at < end:
         if at + _FRAME.size > end:
             raise _DamagedError("a chunk ends within a record")
-        code, length = _FRAME.unpack_from(data, at)
+        code, length, channel = (
+            head.unpack_from(data, at) if at + head.size <= end else (*_FRAME.unpack_from(data, at), -1)
+        )
         at += _FRAME.size
         if length > end - at:
             raise _DamagedError(f"a record in a chunk claims {length} bytes; {end - at} are left")
-        if code == _MESSAGE_CODE:
-            message = _message(data, at, length, channels)
-            if message is not None:
-                yield message
-        elif code in _PARSED:
-            yield _described(code, data[at : at + length], channels)
+        if code != _MESSAGE_CODE:
+            if code in _PARSED:
+                yield _described(code, data[at : at + length], channels)
+        elif channel not in unwanted and (message := _message(data, at, length, channels)) is not None:
+            yield message
         at += length
 
 
