@@ -185,3 +185,10 @@ def test_ticks_come_once_a_period_before_the_message(tmp_path):
     engine.observe = lambda name, event, _: ticks.append(event.time_ns) if event.port == "tick" else None
     engine.run()
     assert ticks == [k * FRAME_NS for k in range(6)]
+
+
+def test_messages_of_one_time_come_in_the_order_of_their_publication(tmp_path):
+    faulty = '[component.faulty]\nrun = "tests.runtime.parts.faulty"\ninputs = { image = "world/image" }\n'
+    _, listener, _ = run(make(tmp_path, more=faulty + 'params = { fault = "undeclared" }'))
+    said = [row[0] for row in listener.heard if row[5] == 4 * FRAME_NS and "journal" not in row[0]]
+    assert said == ["world/image", "echo/drive", "faulty/drive", "faulty/word"], "readers in launch order"
