@@ -1,0 +1,42 @@
+"""What a player waits for that stands in for somebody in lockstep."""
+
+import pytest
+
+from runtime.answers import Answers, stands
+from runtime.launch import load
+
+
+@pytest.fixture
+def table(tmp_path):
+    def make(replaced):
+        system = load("launch/sim.toml", recording=tmp_path / "x.mcap")
+        specs = [spec for spec in system.components if spec.name in replaced]
+        running = {key for spec in system.components if spec.name not in replaced for key in spec.outputs.values()}
+        return stands(specs, running)
+
+    return make
+
+
+def test_the_worlds_next_frame_follows_all_answers_to_the_last_one(table):
+    answers = Answers(table({"simulator"}))
+    assert answers.keys == {"base/actuate", "head/actuate", "pilot/trial"}
+    assert not answers.missing("camera/image", 0)
+    answers.show("camera/image", 0)
+    assert not answers.missing("simulator/head", 0)  # of the same frame
+    for key in sorted(answers.keys):
+        assert answers.missing("camera/image", 125)
+        answers.hear(key, 0)
+    assert not answers.missing("camera/image", 125)
+
+
+def test_what_answers_a_frame_waits_for_that_frame(table):
+    answers = Answers(table({"vision"}))
+    assert answers.keys == {"camera/image"}
+    assert answers.missing("vision/view", 0) == "camera/image"
+    answers.hear("camera/image", 0)
+    assert not answers.missing("vision/view", 0)
+    assert answers.missing("vision/view", 125)
+
+
+def test_nobody_waits_for_who_is_replaced_too(table):
+    assert Answers(table({"simulator", "base", "head", "pilot"})).missing("camera/image", 10**9) == ""
