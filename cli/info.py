@@ -11,12 +11,14 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cli.exit_codes import GOOD, LOSSY
 from docking.score import outcomes
 from report.session import Session, read
+from runtime.mcap_items import Fault
 from runtime.recording import Recording, Topic
 
-LOSSY = 3
-"""Exit code of a recording with holes or a torn end."""
+_WIDTH = 140
+"""Of the table where standard output is no terminal; no name is cut off in it."""
 FILE = Annotated[Path, typer.Argument(help="Recording (MCAP).")]
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
@@ -24,34 +26,53 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 def info(file: FILE, as_json: JSON = False) -> None:
     """Describe a recording; exit code 3 if something is missing. Example: berth info recordings/sim.mcap."""
     session, topics = read(file), Recording(file).topics()
-    numbers = _numbers(session)
+    numbers = _numbers(session, topics)
     if as_json:
         sys.stdout.write(json.dumps({**numbers, "topics": [vars(topic) for topic in topics]}) + "\n")
     else:
         _print(numbers, topics)
-    raise typer.Exit(0 if session.whole and not session.lost else LOSSY)
+    raise typer.Exit(GOOD if session.whole and not session.lost else LOSSY)
 
 
-def _numbers(session: Session) -> dict[str, object]:
+def _numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
+    counts = dict(outcomes(session.trials))
+    succeeded = sum(trial.reached or trial.picked for trial in session.trials)
     return {
         "file": str(session.file),
-        "state": "complete" if session.whole else "torn",
+        "state": _state(session, topics),
         "robot_s": round(session.robot_s, 3),
+        "robot_minutes": round(session.robot_s / 60, 2),
         "trials": len(session.trials),
-        **dict(outcomes(session.trials)),
+        "success_percent": round(100 * succeeded / len(session.trials), 1) if session.trials else None,
+        **counts,
         "collisions": session.collisions,
         "messages": session.messages,
+        "bytes": session.file.stat().st_size,
         "lost": session.lost,
         **{key: session.metadata.get(key, "") for key in ("realm", "clock", "seed", "started")},
     }
 
 
+def _state(session: Session, topics: list[Topic]) -> str:
+    """Complete, or what is missing."""
+    faults: list[Fault] = []
+    for _ in Recording(session.file).messages((), faults):
+        pass
+    words = [f"byte {fault.offset}: {fault.words}" for fault in faults]
+    if not session.whole:
+        words.insert(0, "torn")
+    words += [f"{topic.lost} lost on {topic.topic}" for topic in topics if topic.lost]
+    return "; ".join(words) or "complete"
+
+
 def _print(numbers: dict[str, object], topics: list[Topic]) -> None:
-    console = Console()
+    console = Console(soft_wrap=True, width=None if sys.stdout.isatty() else _WIDTH)
     for name, value in numbers.items():
-        console.print(f"{name:12} {value}", highlight=False)
-    table = Table("topic", "schema", "run", "messages", "bytes", "lost")
+        console.print(f"{name:16} {'-' if value is None else value}", highlight=False)
+    table = Table("topic", "schema", "run")
+    for head in ("messages", "Hz", "bytes", "gaps", "lost"):
+        table.add_column(head, justify="right")
     for topic in topics:
-        row = (topic.topic, topic.schema, f"{topic.run:016x}", str(topic.count), str(topic.bytes), str(topic.lost))
-        table.add_row(*row)
+        numbers_of = (topic.count, f"{topic.hz:.2f}", topic.bytes, topic.gaps, topic.lost)
+        table.add_row(topic.topic, topic.schema, f"{topic.run:016x}", *map(str, numbers_of))
     console.print(table)

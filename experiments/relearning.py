@@ -106,10 +106,10 @@ def check_snapshots(sessions: Sequence[HandedOver], learned: Learned) -> Snapsho
     """Compare with the snapshots of the first session; the others were learned on top of it only here."""
     live = recorded_snapshots(sessions[0].others)
     again = dict(learned.snapshots)
+    if len(sessions) > 1 and live and live[-1][0] not in again:
+        live = live[:-1]  # its stop came at the end of its session; here the log went on
     if not live:
         return SnapshotCheck(None, 0, "no snapshot of the live learner to compare with")
-    if len(sessions) > 1 and live[-1][0] not in again:
-        live = live[:-1]  # its stop came at the end of its session; here the log went on
     for number, (version, digest) in enumerate(live, start=1):
         if again.get(version) != digest:
             words = f"snapshot {number} of {len(live)}: another hash than live, at policy version {version}"
