@@ -150,7 +150,8 @@ class LogWriter:
 
 def _created(file: Path) -> IO[Any]:
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):  # no folder: told when the file is opened
+            file.parent.mkdir(parents=True, exist_ok=True)
         return file.open("x+b")
     except FileExistsError:
         raise ConfigurationError(f"{file}: must not exist yet; a recording is never overwritten") from None

@@ -1,0 +1,86 @@
+"""Small systems with the real recorder, and the command as a process, for the tests of `berth record` and `play`."""
+
+import json
+import secrets
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from runtime.launch import System, load
+from runtime.recording import Logged, Recording
+from runtime.supervise import Supervisor
+
+DEADLINE_S = 30.0
+
+
+def recorded_system(directory: Path, overrides=(), *, clock: str = "lockstep", only=()) -> System:
+    """World and echo in a realm of their own, recorded."""
+    directory.mkdir(exist_ok=True)
+    file = directory / "small.toml"
+    file.write_text(
+        f"""
+realm = "test/{secrets.token_hex(6)}"
+[session]
+clock = "{clock}"
+end = "world/end"
+[component.world]
+run = "tests.runtime.parts.world"
+inputs = {{ drive = "echo/drive", ack = "recorder/ack" }}
+[component.echo]
+run = "tests.runtime.parts.echo"
+inputs = {{ image = "world/image" }}
+[component.recorder]
+run = "components.recorder"
+""",
+        encoding="utf-8",
+    )
+    return load(file, overrides, recording=directory / "session.mcap", only=only)
+
+
+def run_to_end(supervisor: Supervisor, condition=lambda: False) -> None:
+    """Look after the processes until a condition holds or the session ends."""
+    deadline_s = time.monotonic() + DEADLINE_S
+    while not condition() and supervisor.poll(0.01):
+        assert time.monotonic() < deadline_s, (supervisor.missing, supervisor.statuses)
+
+
+def berth(*words, stdin=subprocess.DEVNULL) -> subprocess.Popen:
+    """The command as a process of its own."""
+    command = [sys.executable, "-m", "cli.main", *map(str, words)]
+    return subprocess.Popen(command, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def finish(process: subprocess.Popen) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of a process that ends soon."""
+    out, err = process.communicate(timeout=DEADLINE_S)
+    return process.returncode, out, err
+
+
+def told(process: subprocess.Popen) -> dict:
+    """The JSON object of a process that succeeds."""
+    code, out, err = finish(process)
+    assert code == 0, err
+    return json.loads(out.splitlines()[-1])
+
+
+def messages(file: Path) -> list[Logged]:
+    return list(Recording(file).messages())
+
+
+def by_key(rows) -> dict[str, list[Logged]]:
+    found: dict[str, list[Logged]] = {}
+    for row in rows:
+        found.setdefault(row.topic, []).append(row)
+    return found
+
+
+def is_growing(file: Path):
+    """A condition: the file holds more than its head, and more than when asked first."""
+    sizes: list[int] = []
+
+    def condition() -> bool:
+        sizes.append(file.stat().st_size if file.exists() else 0)
+        return sizes[-1] > max(8192, next((size for size in sizes if size), 0))
+
+    return condition
