@@ -20,9 +20,10 @@ FAR = 1.0
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def cell_level(limits: Limits, beta: float, alpha: float) -> float:
-    """At most 0 in the goal cell."""
-    return max(abs(beta) / limits.beta_goal_rad, abs(alpha) / limits.alpha_goal_rad) - 1.0
+def cell_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
+    """At most 0 in the goal cell, not closer than the sink."""
+    near = (limits.d_min_m - d) / _LENGTH_M
+    return max(abs(beta) / limits.beta_goal_rad - 1.0, abs(alpha) / limits.alpha_goal_rad - 1.0, near)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -39,7 +40,7 @@ def dock_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
 @njit(nogil=True, cache=True, error_model="numpy")
 def goal_level(limits: Limits, beta: float, alpha: float, d: float) -> float:
     """At most 0 in the goal."""
-    return dock_level(limits, beta, alpha, d) if limits.docking else cell_level(limits, beta, alpha)
+    return dock_level(limits, beta, alpha, d) if limits.docking else cell_level(limits, beta, alpha, d)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -60,7 +60,7 @@ def goal_line(goal: Floats, limits: Limits, beta: Floats, shift: float, alpha: f
     """`goal_level` at beta + shift, into `goal` [beta nodes]: one branch outside the loop, so that it runs fast."""
     if not limits.docking:
         for b in range(len(beta)):
-            goal[b] = cell_level(limits, beta[b] + shift, alpha)
+            goal[b] = cell_level(limits, beta[b] + shift, alpha, d)
     else:
         for b in range(len(beta)):
             goal[b] = dock_level(limits, beta[b] + shift, alpha, d)

@@ -66,6 +66,10 @@ def test_the_sink_is_outside_the_ranges_or_too_close_or_too_far(b: float, a: flo
     assert (sink_level(Problem().limits, b, a, d) > 0) == outside
 
 
+def test_the_goal_cell_nearer_than_the_sink_is_the_sink() -> None:
+    assert judge(Problem().limits, np.array([[0.0, 0.0, 0.2], [0.0, 0.0, 0.1999]])).tolist() == [1, -1]
+
+
 def test_nan_is_the_sink() -> None:
     assert judge(Problem().limits, np.array([[math.nan, 0.5, 1.0], [0.5, 0.5, math.nan]])).tolist() == [-1, -1]
 
