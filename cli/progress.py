@@ -50,7 +50,7 @@ class Progress:
         if self._live is not None:
             self._live.stop()
 
-    def update(self, board: Scoreboard, wall_s: float, messages: int, lost: int) -> None:
+    def update(self, board: Scoreboard, wall_s: float, messages: int, lost: int, note: str = "") -> None:
         """Show the state if it is time to.
 
         Args:
@@ -58,10 +58,11 @@ class Progress:
             wall_s: wall time since the start.
             messages: messages seen on the bus.
             lost: messages lost.
+            note: what is wrong at the moment; empty = nothing.
         """
         if self._quiet or wall_s < self._next_s:
             return
-        rows = _rows(board, wall_s, messages, lost)
+        rows = _rows(board, wall_s, messages, lost) + ([("note", note)] if note else [])
         if self._live is not None:
             self._next_s = wall_s + REFRESH_S
             self._live.update(_panel(self._title, rows), refresh=True)

@@ -14,13 +14,17 @@ from cli.progress import Progress
 from cli.session import Summary, Watch, now, recording_name
 from runtime.contract import ComponentError
 from runtime.launch import System, load
+from runtime.link import Link, checked_link
 from runtime.params import ConfigurationError
 
 GOOD_ENDS = ("duration", "interrupted")
 """Reasons that are no failure, beside the end that the system itself declares."""
 
 LAUNCH = Annotated[Path, typer.Argument(help="Launch file.")]
-HOST = Annotated[str, typer.Option(help="Start only the components of this host.")]
+HOST = Annotated[str, typer.Option(help="Start only the components of this host; the others run elsewhere.")]
+LISTEN = Annotated[str, typer.Option(help="Let another host's part come in here, e.g. tcp/0.0.0.0:7447.")]
+CONNECT = Annotated[str, typer.Option(help="Where another host's part listens, e.g. tcp/192.168.1.2:7447.")]
+INSECURE = Annotated[bool, typer.Option("--insecure", help="Listen off loopback, open to whoever reaches it.")]
 ONLY = Annotated[str, typer.Option(help="Start only these components, with commas between.")]
 SET = Annotated[list[str] | None, typer.Option("--set", help="COMPONENT.PARAM=VALUE, also task.KEY and session.KEY.")]
 RECORD = Annotated[Path | None, typer.Option(help="Recording to make; default: recordings/<launch>-<time>.mcap.")]
@@ -36,6 +40,9 @@ QUIET = Annotated[bool, typer.Option("--quiet", help="No progress.")]
 def run(
     launch: LAUNCH,
     host: HOST = "",
+    listen: LISTEN = "",
+    connect: CONNECT = "",
+    insecure: INSECURE = False,
     only: ONLY = "",
     overrides: SET = None,
     record: RECORD = None,
@@ -50,6 +57,7 @@ def run(
     """Start this host's part of a system. Example: berth run launch/sim.toml --duration 600."""
     if duration is not None and not 0.0 <= duration < float("inf"):
         raise ConfigurationError(f"--duration must be >= 0 and finite; got {duration}")
+    link = checked_link(listen, connect, insecure=insecure)
     started = now()
     system = load(
         launch,
@@ -62,9 +70,13 @@ def run(
     )
     if system.recording is not None:
         _check_recording(system.recording)
+    _check_hosts(system, link, in_process=in_process)
     with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
         watch = Watch(progress)
-        failed, reason = _run(system, watch, started.isoformat(timespec="seconds"), duration, in_process=in_process)
+        if in_process:
+            failed, reason = _run_in_process(system, watch, started.isoformat(timespec="seconds"), duration)
+        else:
+            failed, reason = _run_on_bus(system, watch, duration, link)
     summary = watch.summary(reason, system.recording)
     if summary.recording and watch.board.scorer.trials:
         summary.report = _report(system.recording)
@@ -82,18 +94,31 @@ def _check_recording(file: Path) -> None:
         raise ConfigurationError(f"{file}: can not be made: {error.strerror}") from None
 
 
-def _run(system: System, watch: Watch, started: str, duration: float | None, *, in_process: bool) -> tuple[bool, str]:
-    """Returns (failed, reason)."""
-    if in_process:
-        from cli.in_process import run_in_process  # noqa: PLC0415
+def _check_hosts(system: System, link: Link, *, in_process: bool) -> None:
+    if in_process and system.host:
+        raise ConfigurationError("--in-process must stand without --host: one process runs the whole system")
+    if link != Link() and (in_process or not system.host):
+        raise ConfigurationError("--listen and --connect must stand with --host: they join the parts of two hosts")
+    if system.other_hosts and link == Link():
+        others = ", ".join(system.other_hosts)
+        raise ConfigurationError(f"--host {system.host} must come with --listen or --connect: {others} runs the rest")
 
-        try:
-            return False, run_in_process(system, watch, started, duration)
-        except ComponentError as error:
-            return True, str(error)
+
+def _run_in_process(system: System, watch: Watch, started: str, duration: float | None) -> tuple[bool, str]:
+    """Returns (failed, reason)."""
+    from cli.in_process import run_in_process  # noqa: PLC0415
+
+    try:
+        return False, run_in_process(system, watch, started, duration)
+    except ComponentError as error:
+        return True, str(error)
+
+
+def _run_on_bus(system: System, watch: Watch, duration: float | None, link: Link) -> tuple[bool, str]:
+    """Returns (failed, reason)."""
     from cli.on_bus import run_on_bus  # noqa: PLC0415
 
-    return run_on_bus(system, watch, duration)
+    return run_on_bus(system, watch, duration, link)
 
 
 def _report(recording: Path | None) -> str:

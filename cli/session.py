@@ -44,6 +44,8 @@ class Watch:
         self.board = Scoreboard()
         self.messages = 0
         self.lost = 0
+        self.note = ""
+        """What is wrong at the moment, in words."""
         self._progress = progress
         self._began_s = time.monotonic()
 
@@ -53,7 +55,7 @@ class Watch:
 
     def show(self) -> None:
         """Refresh the progress if it is time to."""
-        self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost)
+        self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost, self.note)
 
     def summary(self, reason: str, recording: Path | None) -> Summary:
         """The session's numbers. Trials are all; docked and picked are those of the evaluation."""

@@ -19,7 +19,7 @@ class Assignment:
     name: str
     """Of the component."""
     peers: tuple[str, ...]
-    """Components that the start waits for, itself included."""
+    """Components that the start waits for, itself included, on all hosts."""
     endpoint: str
     """Of the host's router."""
     origin_ns: int

@@ -1,6 +1,7 @@
 """Sessions on the bus: one router per host on loopback, every process a peer of it, no multicast.
 
-Peers listen on loopback and learn of one another from the router, so they form a mesh that outlives it.
+Peers listen on loopback and learn of one another from the router, so they form a mesh that outlives it. Routers of
+two hosts do not tell one another of their peers, so nobody dials the other host's loopback (measured).
 """
 
 from __future__ import annotations
@@ -8,38 +9,46 @@ from __future__ import annotations
 import json
 import os
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import zenoh
 
 from runtime.foreign_thread import keep_thread_state
+from runtime.link import Link
 from runtime.params import ConfigurationError
 
 LOOPBACK = "127.0.0.1"
 _THREADS = "(app:(worker_threads:1),rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app))"
 """One thread for all of zenoh: fewer hops between threads, a fifth less processor time per message (measured)."""
+ALONE = Link()
+_NOTHING: Mapping[str, object] = MappingProxyType({})
 _READY = "@ready"
 """A verbatim chunk: `REALM/**` does not match it."""
 
 
-def open_router(endpoint: str) -> zenoh.Session:
+def open_router(endpoint: str, link: Link = ALONE, clock: str = "lockstep") -> zenoh.Session:
     """The host's rendezvous.
 
     Args:
         endpoint: e.g. `tcp/127.0.0.1:7447`; `free_endpoint()` finds one.
+        link: to another host's router.
+        clock: of the session, `lockstep` or `real`.
 
     Raises:
-        ConfigurationError: the endpoint is busy or malformed.
+        ConfigurationError: an endpoint is busy or malformed.
     """
+    listen = [endpoint, link.listen] if link.listen else [endpoint]
+    connect = [link.connect] if link.connect else []
     try:
-        return zenoh.open(_config("router", listen=endpoint))
+        return zenoh.open(_config("router", listen, connect, link.options(clock)))
     except zenoh.ZError as error:
-        raise ConfigurationError(f"endpoint {endpoint} must be free: {_reason(error)}") from None
+        raise ConfigurationError(f"endpoint {' and '.join(listen)} must be free: {_reason(error)}") from None
 
 
 def open_peer(endpoint: str) -> zenoh.Session:
     """A process of the system, connected to its host's router."""
-    return zenoh.open(_config("peer", listen=f"tcp/{LOOPBACK}:0", connect=endpoint))
+    return zenoh.open(_config("peer", [f"tcp/{LOOPBACK}:0"], [endpoint]))
 
 
 def open_observer(endpoint: str) -> zenoh.Session:
@@ -89,18 +98,19 @@ def direct(receive: Callable[[zenoh.Sample], None]) -> zenoh.handlers.Callback[z
     return zenoh.handlers.Callback(call, indirect=False)
 
 
-def _config(mode: str, *, listen: str, connect: str = "") -> zenoh.Config:
+def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str, object] = _NOTHING) -> zenoh.Config:
     os.environ.setdefault("ZENOH_RUNTIME", _THREADS)  # read once, when the process opens its first session
     config = zenoh.Config()
     options: dict[str, object] = {
         "mode": mode,
-        "listen/endpoints": [listen],
-        "connect/endpoints": [connect] if connect else [],
+        "listen/endpoints": listen,
+        "connect/endpoints": connect,
         "scouting/multicast/enabled": False,
         # Waited out by a race at half of the opens; 0 would lose the first message (both measured).
         "scouting/delay": 50,
         # Leaves segments in /dev/shm behind when killed, and images of 10 kB gain nothing.
         "transport/shared_memory/enabled": False,
+        **more,
     }
     for key, value in options.items():
         config.insert_json5(key, json.dumps(value))

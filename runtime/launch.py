@@ -66,11 +66,27 @@ class System:
     components: tuple[ComponentSpec, ...]
     text: str
     """The resolved launch file, for the session's log."""
+    host: str = ""
+    """This machine, one of the components' hosts; empty = all components run here."""
+
+    @property
+    def here(self) -> tuple[ComponentSpec, ...]:
+        """The components that run on this machine."""
+        return tuple(spec for spec in self.components if self.is_here(spec.name))
+
+    @property
+    def other_hosts(self) -> tuple[str, ...]:
+        """The machines that run the other components, in launch order."""
+        return tuple(dict.fromkeys(spec.host for spec in self.components if self.host and spec.host != self.host))
+
+    def is_here(self, name: str) -> bool:
+        """Whether a component, or `supervisor`, runs on this machine."""
+        return not any(spec.name == name and self.host and spec.host != self.host for spec in self.components)
 
     @property
     def recording(self) -> Path | None:
-        """File that the system's recorder writes; None without one."""
-        files = [str(spec.params.get("file", "")) for spec in self.components if spec.tap]
+        """File that the system's recorder writes on this machine; None without one."""
+        files = [str(spec.params.get("file", "")) for spec in self.here if spec.tap]
         return next((Path(file) for file in files if file), None)
 
     def component(self, name: str) -> ComponentSpec:
@@ -138,8 +154,8 @@ def load(
             stand without quotes.
         clock: as on the command line; empty = as in the file.
         seed: as on the command line; None = as in the file.
-        host: keep only the components of this host; empty = all.
-        only: keep only these components; empty = all.
+        host: the machine that this is; empty = all components run here.
+        only: keep only these components, on every host; empty = all.
         recording: file for the recorder (a tap with a parameter `file`); None = leave recorders out.
 
     Raises:
@@ -174,7 +190,7 @@ def resolve(table: Mapping[str, Any], file: str, overrides: Iterable[str] = ()) 
 
 
 def _selected(system: System, host: str, only: Collection[str], recording: Path | None) -> System:
-    """The part of a system that is to run here. Wires to the rest stay: it runs elsewhere."""
+    """The part of a system that is to run, and which of it here. Wires to what is left out stay."""
     for name in only:
         system.component(name)
     hosts = {spec.host for spec in system.components}
@@ -182,14 +198,15 @@ def _selected(system: System, host: str, only: Collection[str], recording: Path 
         raise ConfigurationError(f"{system.file}: --host must be one of {', '.join(sorted(hosts))}; got {host!r}")
     kept = []
     for spec in system.components:
-        if (host and spec.host != host) or (only and spec.name not in only):
+        if only and spec.name not in only:
             continue
         if spec.tap and "file" in spec.params:
             if recording is None:
                 continue
-            spec = dataclasses.replace(spec, params={**spec.params, "file": str(recording)})  # noqa: PLW2901
+            file = str(recording) if host in {"", spec.host} else ""
+            spec = dataclasses.replace(spec, params={**spec.params, "file": file})  # noqa: PLW2901
         kept.append(spec)
-    return dataclasses.replace(system, components=tuple(kept))
+    return dataclasses.replace(system, components=tuple(kept), host=host)
 
 
 def _parsed(path: Path) -> dict[str, Any]:
@@ -279,6 +296,9 @@ def _component(name: str, entry: Any, shared: Mapping[str, Any], seed: int, file
             raise ConfigurationError(f"{where}.{key} is unknown; known are {', '.join(_COMPONENT)}")
     run = _string(entry, "run", "", where)
     ports = ports_of(run, f"{where}.run")
+    host = _string(entry, "host", "robot", where)
+    if not _NAME.fullmatch(host):
+        raise ConfigurationError(f"{where}.host must be a lower-case word; got {host!r}")
     restart = _string(entry, "restart", "never", where)
     if restart not in RESTARTS:
         raise ConfigurationError(f"{where}.restart must be one of {', '.join(RESTARTS)}; got {restart!r}")
@@ -292,7 +312,7 @@ def _component(name: str, entry: Any, shared: Mapping[str, Any], seed: int, file
     return ComponentSpec(
         name=name,
         run=run,
-        host=_string(entry, "host", "robot", where),
+        host=host,
         restart=restart,
         restart_limit=limit,
         device=_mapping(entry, "device", where),

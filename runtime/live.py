@@ -46,7 +46,10 @@ class Fold:
         self._newest_ns: dict[str, int] = {}
         self._status_due_ns = 0
         self._heard_ns = 0
-        self._holding = False
+        self._holders: set[int] = set()
+        """Runs of the supervisors that are restarting a component."""
+        self._foreign: set[str] = set()
+        """Input ports that another host publishes; its clock is not ours."""
         system = station.system
         self._lockstep = system.clock == "lockstep"
         self._frames = FrameClock()
@@ -74,7 +77,10 @@ class Fold:
             box = self._inbox.box(name, port.queue, latest=port.queue == 1)
             if self._lockstep and port.per_frame:
                 box.latest, box.limit = False, max(port.queue, 16)
-            self._station.lane(box, key, port.schema, sources.get(key, ("", ""))[0])
+            publisher = sources.get(key, ("", ""))[0]
+            self._station.lane(box, key, port.schema, publisher)
+            if not self._station.system.is_here(publisher):
+                self._foreign.add(name)
             self._station.subscribe(key)
             decoders[name] = Decoder(port.schema)
         if self._stall_ns is not None:
@@ -173,13 +179,13 @@ class Fold:
     def _receive(self, sample: Arrival) -> None:
         port, stamp = sample.box.name, sample.stamp
         try:
-            self._check_capture(stamp.capture_ns)
+            self._check_capture(port, stamp.capture_ns)
             message = self._decoders[port](sample.payload)
         except Refused as reason:
             self._station.door.refusals.add(sample.key, reason)
             return
         if port == HOLD_KEY:
-            self._hold(message)
+            self._hold(message, stamp.run)
             return
         self._heard_ns = time.monotonic_ns()
         self._newest_ns[port] = max(stamp.capture_ns, self._newest_ns.get(port, 0))
@@ -188,8 +194,15 @@ class Fold:
         time_ns = self._frames.advance(max(stamp.capture_ns, self._now_ns()))
         self._hand(Event(time_ns, port, message, *_cause(stamp)))
 
-    def _check_capture(self, capture_ns: int) -> None:
-        if not self._lockstep and capture_ns > self._clock.session_ns(time.monotonic_ns()) + _FUTURE_NS:
+    def _check_capture(self, port: str, capture_ns: int) -> None:
+        """Off the control path another host's time is taken as it is, and never compared with our own.
+
+        On the control path what comes from another host answers a frame of this one, so it can not be newer than now.
+        """
+        foreign = port in self._foreign
+        if self._lockstep or (foreign and self._patient):
+            return
+        if capture_ns > self._clock.session_ns(time.monotonic_ns()) + (0 if foreign else _FUTURE_NS):
             raise Refused(f"capture time {capture_ns} ns lies in the future")
 
     def _notice(self, notice: Notice) -> None:
@@ -199,15 +212,15 @@ class Fold:
             name, run = notice.message
             self._hand(self._own_event(GONE, self._now_ns(), name, run))
 
-    def _hold(self, hold: Hold) -> None:
-        self._holding = hold.active
+    def _hold(self, hold: Hold, run: int) -> None:
+        (self._holders.add if hold.active else self._holders.discard)(run)
         self._heard_ns = time.monotonic_ns()
 
     def _check_stall(self, now_ns: int) -> None:
         if self._stall_ns is None or now_ns < self._heard_ns + self._stall_ns:
             return
         self._heard_ns = now_ns
-        if not self._holding:
+        if not self._holders:
             late = min(self._newest_ns, key=lambda port: self._newest_ns[port], default="any input")
             self._station.note = f"stall: nothing on {late} since {self._newest_ns.get(late, 0) / 1e9:.3f} s"
             print(self._station.note, flush=True)  # noqa: T201  (standard output is the component's log)

@@ -51,6 +51,7 @@ class Station:
         self.presence = Presence(assignment.peers)
         self.note = ""
         """The newest stall, in words; a refusal has a note of its own."""
+        self._names = {spec.name for spec in self.system.components}
         self._started = False
         self._tokens: list[zenoh.LivelinessToken] = []
         stop.wake = lambda: self.inbox.notify(Notice("wake"))
@@ -91,9 +92,11 @@ class Station:
         if stage != LISTENS:
             return
         if appeared:
-            late = self.assignment.restarts > 0 and not self._started
+            began_before = self.assignment.restarts > 0 and not self._started
+            # Another host may have been running for long when this one joins it.
+            late = began_before or not self.system.is_here(name)
             self.door.announce(name, run, first=None if late else 0)
-        elif self._started and not self.stop.asked and name in self.assignment.peers:
+        elif self._started and not self.stop.asked and name in self._names:
             self.inbox.notify(Notice(GONE, (name, run)))
 
     def _failed(self, failure: BaseException) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -15,11 +15,13 @@ from typing import Any, Self
 import zenoh
 
 from runtime.assignment import READY_TIMEOUT_S, Assignment
-from runtime.bus import direct, free_endpoint, open_router, ready_key
+from runtime.bus import ALONE, direct, free_endpoint, open_router, ready_key
 from runtime.child import Child
 from runtime.joining import describe
 from runtime.launch import ComponentSpec, System
+from runtime.link import Link
 from runtime.live import HOLD_KEY
+from runtime.meeting import Meeting
 from runtime.messages import message_class
 from runtime.outlet import Outlet
 from runtime.presence import LISTENS, STARTS, Presence, watch
@@ -33,6 +35,8 @@ from schemas.session_pb2 import Hold, Status
 NAME = "supervisor"
 _FOLDS_S, _TAPS_S = 1.2, 0.6
 """Time to stop before SIGKILL: first for the folds, then for the taps, which record the folds' last messages."""
+_OTHERS_S = 1.5
+"""After a session's end: how long this host's taps hear what the other hosts still say."""
 _POLL_S = 0.01
 
 
@@ -65,24 +69,29 @@ class Supervisor:
         self,
         system: System,
         *,
-        only: Collection[str] = (),
         endpoint: str = "",
+        link: Link = ALONE,
         ready_timeout_s: float = READY_TIMEOUT_S,
     ) -> None:
         """Nothing is started before `start`.
 
         Args:
-            system: the resolved launch file.
-            only: names of the components to run; empty = all.
+            system: the resolved launch file; what is `here` in it is run.
             endpoint: where the host's router listens; empty = a free port on loopback.
+            link: to another host's router.
             ready_timeout_s: how long the components wait for one another.
         """
         self._system = system
-        self._specs = [spec for spec in system.components if not only or spec.name in only]
+        self._specs = system.here
         self._endpoint = endpoint or free_endpoint()
+        self._link = link
         self._ready_timeout_s = ready_timeout_s
         self._names = tuple(spec.name for spec in self._specs)
-        self._presence = Presence(self._names)
+        self._everybody = tuple(spec.name for spec in system.components)
+        self._presence = Presence(self._everybody)
+        self._bus_run = new_run()
+        self._meeting = Meeting(system, self._bus_run, self._end_everywhere, self._failed)
+        self._ends_everywhere = False
         self._members: list[_Member] = []
         self._resources = ExitStack()
         self._watched: dict[str, Callable[[Any, int], None]] = {}
@@ -95,7 +104,7 @@ class Supervisor:
         """Why the session ended or shall end; empty while it runs."""
         self.deaths: list[Death] = []
         self.statuses: dict[str, Status] = {}
-        """The newest of each component."""
+        """The newest of each component of this host."""
 
     @property
     def run(self) -> Run:
@@ -111,13 +120,18 @@ class Supervisor:
 
     @property
     def missing(self) -> list[str]:
-        """Components that have not passed the start barrier."""
+        """Components that have not passed the start barrier, or are out of reach."""
         return self._presence.missing(STARTS)
 
     @property
     def pids(self) -> dict[str, int]:
         """Process ids of the components that run."""
         return {member.spec.name: member.child.pid for member in self._members if member.child.exit_code is None}
+
+    @property
+    def note(self) -> str:
+        """Which hosts of the system are out of reach; empty = none."""
+        return self._meeting.note
 
     @property
     def messages(self) -> int:
@@ -144,7 +158,7 @@ class Supervisor:
         self._run = self._resources.enter_context(
             claim(system.realm, self._endpoint, started, system.file, self._names, _topics(system))
         )
-        session = open_router(self._endpoint)
+        session = open_router(self._endpoint, self._link, system.clock)
         self._resources.callback(session.close)
         self._open_bus(session)
         self._origin_ns = time.monotonic_ns()
@@ -154,11 +168,12 @@ class Supervisor:
             self._members.append(_Member(spec, restarts, self._spawn(spec, 0)))
 
     def _open_bus(self, session: zenoh.Session) -> None:
-        run = new_run()
         realm = self._system.realm
-        self._hold = Outlet(session, realm, HOLD_KEY, Hold, JOURNAL, run)
-        token = session.liveliness().declare_token(ready_key(realm, LISTENS, NAME, run))
+        self._hold = Outlet(session, realm, HOLD_KEY, Hold, JOURNAL, self._bus_run)
+        key = ready_key(realm, LISTENS, NAME, self._bus_run)
+        token = session.liveliness().declare_token(key)
         self._resources.callback(lambda: token)  # lives as long as the session
+        self._meeting.open(session, Path(self.run.directory) / f"{NAME}.log")
         watch(session, realm, self._presence, lambda *_: None, self._failed)
         if self._system.end:
             self._watched.setdefault(self._system.end, lambda *_: None)
@@ -189,7 +204,7 @@ class Supervisor:
 
     def _received(self, key: str, message: Any, capture_ns: int) -> None:
         if key == self._system.end:
-            self.stop_soon(message.reason or "end")
+            self._end_everywhere(message.reason or "end")
         self._watched[key](message, capture_ns)
 
     def _take_status(self, status: Status, _: int) -> None:
@@ -203,7 +218,8 @@ class Supervisor:
         assignment = Assignment(
             system=self._system,
             name=spec.name,
-            peers=self._names,
+            # Whoever is started again goes on with those that this host can reach by itself.
+            peers=self._names if restarts else self._everybody,
             endpoint=self._endpoint,
             origin_ns=self._origin_ns,
             started=self.run.started,
@@ -215,6 +231,10 @@ class Supervisor:
     def stop_soon(self, reason: str) -> None:
         """Let `poll` report the end; from any thread. The first reason counts."""
         self.end_reason = self.end_reason or reason
+
+    def _end_everywhere(self, reason: str) -> None:
+        self._ends_everywhere = True
+        self.stop_soon(reason)
 
     def poll(self, timeout_s: float = 0.1) -> bool:
         """Look after the processes for a while.
@@ -228,6 +248,7 @@ class Supervisor:
                 raise self._failure
             for member in self._members:
                 self._look_after(member)
+            self._meeting.begun |= not set(self._presence.missing(STARTS)) & set(self._names)
             if time.monotonic() >= deadline_s:
                 break
             time.sleep(_POLL_S)
@@ -263,10 +284,19 @@ class Supervisor:
     def stop(self, reason: str = "stopped") -> None:
         """Stop everything: folds first, then taps; SIGTERM, then SIGKILL. May be called twice."""
         self.stop_soon(reason)
+        self._meeting.close()
         self._end([member for member in self._members if not member.spec.tap], _FOLDS_S)
+        self._hear_others()
         self._end([member for member in self._members if member.spec.tap], _TAPS_S)
         self._members = []
         self._resources.close()
+
+    def _hear_others(self) -> None:
+        """If the session ends on all hosts, what the others say at their stop belongs into this host's recording."""
+        deadline_s = time.monotonic() + (_OTHERS_S if self._ends_everywhere else 0.0)
+        theirs = {spec.name for spec in self._system.components if not spec.tap} - set(self._names)
+        while theirs - set(self._presence.missing(LISTENS)) and time.monotonic() < deadline_s:
+            time.sleep(_POLL_S)
 
     def _end(self, members: list[_Member], grace_s: float) -> None:
         for member in members:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from runtime.contract import Port
+from runtime.contract import Peers, Port
 from runtime.launch import ComponentSpec, System, ports_of
 from runtime.params import ConfigurationError
 
@@ -61,6 +61,7 @@ def check_wiring(system: System) -> None:
         _check_inputs(system, spec, sources)
     _check_session_keys(system, sources)
     _check_cycles(system)
+    _check_hosts(system)
 
 
 def _check_inputs(system: System, spec: ComponentSpec, sources: dict[str, tuple[str, str]]) -> None:
@@ -104,6 +105,31 @@ def _check_cycles(system: System) -> None:
     for spec in system.components:
         for port in spec.outputs:
             _visit(system, (spec.name, port), by_input, done, [])
+
+
+def _check_hosts(system: System) -> None:
+    """Whoever must stop the robot compares capture times with its own clock, so its frames come from its own host."""
+    for spec in system.components:
+        if any(isinstance(port, Peers) for port in ports_of(spec.run).INPUTS.values()):
+            for name in control_path(system, spec.name):
+                if (host := system.component(name).host) != spec.host:
+                    raise ConfigurationError(
+                        f"{system.file}: {name}.host must be {spec.host!r}, that of {spec.name}, which stops by the "
+                        f"age of its frames and compares clocks of one machine only; got {host!r}"
+                    )
+
+
+def control_path(system: System, target: str) -> list[str]:
+    """The components whose answer to a frame decides what `target` does in that frame, itself included."""
+    found, waiting = [target], [target]
+    while waiting:
+        name = waiting.pop()
+        for wire in wires(system):
+            per_frame = wire.target == name and _output(system, wire.source, wire.output).per_frame
+            if per_frame and wire.source not in found:
+                found.append(wire.source)
+                waiting.append(wire.source)
+    return found
 
 
 def _visit(

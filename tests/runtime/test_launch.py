@@ -10,6 +10,7 @@ from runtime.params import ConfigurationError
 from runtime.wiring import wires
 
 SIM = Path(__file__).parent.parent.parent / "launch" / "sim.toml"
+SIM2 = SIM.parent / "sim2.toml"
 
 
 def changed(tmp_path, *changes):
@@ -44,6 +45,7 @@ def changed(tmp_path, *changes):
         ('restart = "on-failure"', 'restart = "perhaps"', "learner.restart must be one of never, on-failure, always"),
         ("[task]", "[task]\nbeta_cells = 30", "task.beta_cells must be odd and at least 3; got 30"),
         ("[task]", "[tusk]", "tusk is unknown; known are realm, session, task, component"),
+        ("[component.vision]", '[component.vision]\nhost = "a/b"', "vision.host must be a lower-case word; got 'a/b'"),
         ("[component.vision]", "[component.vision]\ncolour = 1", "vision.colour is unknown"),
         ("[component.vision]", "[component.vision]\nparams = { x_y_z = 1 }", "vision.params.x_y_z is unknown"),
     ],
@@ -116,6 +118,31 @@ def test_only_named_components_are_kept_and_unknown_ones_refused():
         load(SIM, only=("visoin",))
     with pytest.raises(ConfigurationError, match="--host must be one of robot; got 'moon'"):
         load(SIM, host="moon")
+
+
+def test_each_host_runs_its_components_and_knows_all():
+    robot, laptop = (load(SIM2, host=host, recording=Path("x.mcap")) for host in ("robot", "laptop"))
+    assert [spec.name for spec in robot.components] == [spec.name for spec in laptop.components]
+    assert {spec.name for spec in laptop.here} == {"learner", "recorder"}
+    assert {spec.name for spec in robot.here} == {spec.name for spec in robot.components} - {"learner", "recorder"}
+    assert (robot.recording, laptop.recording) == (None, Path("x.mcap"))
+    assert (robot.other_hosts, laptop.other_hosts) == (("laptop",), ("robot",))
+    everything = load(SIM2, recording=Path("x.mcap"))
+    assert (everything.here, everything.other_hosts) == (everything.components, ())
+
+
+def test_two_machines_run_what_one_runs():
+    one, two = load(SIM, clock="real"), load(SIM2)
+    assert [(s.name, s.run, s.inputs, s.params) for s in one.components] == [
+        (s.name, s.run, s.inputs, s.params) for s in two.components
+    ]
+
+
+@pytest.mark.parametrize("name", ["simulator", "vision", "head", "tracker", "pilot", "grasper"])
+def test_who_decides_in_a_frame_what_base_does_shares_its_host(tmp_path, name):
+    run = f'run = "components.{name}"'
+    with pytest.raises(ConfigurationError, match=f"{name}.host must be 'robot', that of base, .*; got 'laptop'"):
+        load(changed(tmp_path, (run, run + '\nhost = "laptop"')))
 
 
 def test_a_cycle_without_delay_is_refused(tmp_path):
