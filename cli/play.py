@@ -76,6 +76,7 @@ def play(
         duration_s=duration,
         owners=replaced,
         known=None if run is None else run.topics,
+        by_frame=run is not None and description(run).system.clock == "lockstep",
     )
     opened = _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced)
     table, failed = _played(opened)

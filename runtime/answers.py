@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from threading import Lock
 
-from runtime.contract import Port
 from runtime.launch import ComponentSpec, ports_of
 
 
@@ -32,13 +31,10 @@ def stands(replaced: Collection[ComponentSpec], running: Collection[str]) -> dic
 
 def _of(spec: ComponentSpec, running: Collection[str]) -> Iterator[tuple[str, Stand]]:
     ports = ports_of(spec.run)
-    inputs = [
-        key
-        for name, key in spec.inputs.items()
-        if isinstance(ports.INPUTS.get(name), Port) and ports.INPUTS[name].per_frame and key in running
-    ]
     for name, key in spec.outputs.items():
-        yield key, Stand(ports.OUTPUTS[name].delayed, tuple(inputs))
+        output = ports.OUTPUTS[name]
+        causes = [cause for cause in output.on if cause in spec.inputs and ports.INPUTS[cause].per_frame]
+        yield key, Stand(output.delayed, tuple(spec.inputs[c] for c in causes if spec.inputs[c] in running))
 
 
 class Answers:

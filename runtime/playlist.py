@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+import heapq
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ from runtime.recording import Logged, Recording
 from runtime.selection import Selection
 
 _SHELL = ("status", "journal")
+_SKEW_NS = 4_000_000_000
+"""A recorder hears one component earlier than another; lockstep waits for it after 16 frames, two seconds."""
 
 
 class Playlist:
@@ -26,6 +29,7 @@ class Playlist:
         duration_s: float | None = None,
         owners: Collection[str] = (),
         known: Collection[str] | None = None,
+        by_frame: bool = False,
     ) -> None:
         """Choose.
 
@@ -37,11 +41,13 @@ class Playlist:
             duration_s: from there; None = to the end.
             owners: only what these components said on their output ports; empty = everybody, all.
             known: only keys that somebody listens to; None = all.
+            by_frame: in the order of capture times, not of reception, for those who answer frame by frame.
 
         Raises:
             ConfigurationError: no session of ours, nothing left, two topics on one key.
         """
         self._recording = recording
+        self._by_frame = by_frame
         launch = recording.launch()
         if not recording.session() or not launch:
             raise ConfigurationError(f"{recording.file}: must be a session recorded by berth")
@@ -94,11 +100,33 @@ class Playlist:
 
     def messages(self, since_ns: int) -> Iterator[Logged]:
         """The chosen messages from a time on, under their new keys."""
+        chosen = self._chosen(since_ns)
+        return in_frame_order(chosen, _SKEW_NS) if self._by_frame else chosen
+
+    def _chosen(self, since_ns: int) -> Iterator[Logged]:
         for logged in self._recording.messages(list(self._keys)):
             if self._end_ns is not None and logged.time_ns > self._end_ns:
                 return
             if logged.time_ns >= since_ns:
                 yield logged._replace(topic=self._keys[logged.topic])
+
+
+def in_frame_order(messages: Iterable[Logged], skew_ns: int) -> Iterator[Logged]:
+    """Messages sorted by capture time, those of one frame as they came.
+
+    Args:
+        messages: nearly sorted: none comes later than this after the newest one.
+        skew_ns: how much later; so much is held in memory.
+    """
+    waiting: list[tuple[int, int, Logged]] = []
+    newest_ns = 0
+    for number, logged in enumerate(messages):
+        heapq.heappush(waiting, (logged.capture_ns, number, logged))
+        newest_ns = max(newest_ns, logged.capture_ns)
+        while waiting[0][0] < newest_ns - skew_ns:
+            yield heapq.heappop(waiting)[2]
+    while waiting:
+        yield heapq.heappop(waiting)[2]
 
 
 def _owners(launch: Mapping[str, Any]) -> dict[str, str]:

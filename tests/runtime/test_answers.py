@@ -40,3 +40,11 @@ def test_what_answers_a_frame_waits_for_that_frame(table):
 
 def test_nobody_waits_for_who_is_replaced_too(table):
     assert Answers(table({"simulator", "base", "head", "pilot"})).missing("camera/image", 10**9) == ""
+
+
+def test_an_output_waits_only_for_what_can_cause_it(table):
+    answers = Answers(table({"head"}))
+    assert answers.missing("head/state", 0) == "simulator/head"
+    assert answers.missing("head/actuate", 0) == "tracker/aim"
+    answers.hear("simulator/head", 0)
+    assert not answers.missing("head/state", 0)  # the tracker aims by it

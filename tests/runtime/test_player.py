@@ -1,0 +1,254 @@
+"""A log on the bus: everything, in order, under new names; in place of a component too."""
+
+import threading
+import time
+from contextlib import contextmanager
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mcap.writer import Writer
+
+from runtime import listener
+from runtime.answers import Answers, stands
+from runtime.joining import description
+from runtime.launch import load
+from runtime.listener import Listener
+from runtime.params import ConfigurationError
+from runtime.player import Player
+from runtime.playhead import Playhead
+from runtime.playlist import Playlist, in_frame_order
+from runtime.recording import Logged, Recording
+from runtime.runfile import find
+from runtime.selection import Selection
+from runtime.stage import joined_stage, own_stage
+from runtime.supervise import Supervisor
+from tests.cli.running import by_key, messages, recorded_system, run_to_end
+
+pytestmark = pytest.mark.xdist_group("live")
+FRAMES = 120
+DEADLINE_S = 30.0
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """A whole lockstep session of world and echo."""
+    system = recorded_system(tmp_path_factory.mktemp("log"), [f"world.frames={FRAMES}"])
+    with Supervisor(system) as supervisor:
+        run_to_end(supervisor)
+        supervisor.stop()
+    assert supervisor.exit_code == 0
+    return system
+
+
+def playlist(log, selection=None, remap=None, **options) -> Playlist:
+    return Playlist(Recording(log.recording), selection or Selection(), remap or {}, **options)
+
+
+class Ear(threading.Thread):
+    """Listens on a thread of its own."""
+
+    def __init__(self, run, keys):
+        super().__init__(daemon=True)
+        self._listener = Listener(run, keys, block=True)
+        self.rows: list[Logged] = []
+        self._done = threading.Event()
+
+    def run(self):
+        quiet = 0
+        while not (self._done.is_set() and quiet > 2):
+            heard = self._listener.take(0.05)
+            quiet = quiet + 1 if heard is None else 0
+            if heard is not None:
+                self.rows.append(Logged(heard.key, heard.schema, heard.payload, *heard.stamp, 0))
+
+    def finish(self):
+        self._done.set()
+        self.join(DEADLINE_S)
+        with self._listener:
+            assert (self._listener.dropped, self._listener.refused) == (0, 0)
+
+
+@contextmanager
+def heard_in(realm, keys):
+    """What is heard in a realm, complete after the context."""
+    ear = Ear(find(realm), keys)
+    ear.start()
+    yield ear.rows
+    ear.finish()
+
+
+def play(log, chosen, head, until=None, **options):
+    """Play in a realm of its own; what was heard, and how long it took."""
+    realm = f"replay/{log.realm}"
+    with own_stage(chosen, realm) as stage:
+        player = Player(chosen, stage, head, **options)
+        with heard_in(realm, [*chosen.topics, "player/clock"]) as rows:
+            if until is not None:
+                until(player, rows)
+            began_s = time.monotonic()
+            player.run()
+            wall_s = time.monotonic() - began_s
+    return [row for row in rows if row.topic != "player/clock"], wall_s
+
+
+def contents(rows):
+    return [(row.topic, row.schema, row.payload, row.capture_ns) for row in rows]
+
+
+def test_as_fast_as_possible_is_held_back_by_the_slowest_and_loses_nothing(log, monkeypatch):
+    monkeypatch.setattr(listener, "_QUEUE", 8)
+    rows, _ = play(log, playlist(log), Playhead(0.0))
+    assert contents(rows) == contents(messages(log.recording))
+
+
+def test_a_played_run_is_a_new_one_whose_sequences_begin_at_zero(log):
+    rows, _ = play(log, playlist(log, start_s=5.0), Playhead(0.0))
+    logged = messages(log.recording)
+    assert not {row.run for row in rows} & {row.run for row in logged}
+    assert len({row.run for row in rows}) == len({row.run for row in logged if row.time_ns >= 5e9})
+    for found in by_key(rows).values():
+        assert [row.sequence for row in found] == list(range(len(found)))
+
+
+def test_a_loop_begins_a_new_epoch_in_which_time_starts_anew(log):
+    chosen = playlist(log, Selection(topics=("world/image",)))
+
+    def stop_in_the_third(player, rows):
+        def watch():
+            while player.epochs < 3:
+                time.sleep(0)
+            player.stop("enough")
+
+        threading.Thread(target=watch, daemon=True).start()
+
+    rows, _ = play(log, chosen, Playhead(0.0), until=stop_in_the_third, loop=True)
+    epochs: dict[int, list[int]] = {}
+    for row in rows:
+        epochs.setdefault(row.run, []).append(row.capture_ns)
+    frames = [row.capture_ns for row in messages(log.recording) if row.topic == "world/image"]
+    assert list(epochs.values())[:2] == [frames, frames]
+
+
+def test_the_rate_stretches_time(log):
+    span_s = (messages(log.recording)[-1].time_ns - messages(log.recording)[0].time_ns) / 1e9
+    _, wall_s = play(log, playlist(log), Playhead(40.0))
+    assert wall_s >= 0.99 * span_s / 40
+
+
+def test_paused_plays_nothing_until_it_is_told_to(log):
+    def drive(player, rows):
+        for word in ("step", "step", "step", "quit"):
+            player.command(word)
+
+    rows, _ = play(log, playlist(log), Playhead(1.0, paused=True), until=drive)
+    assert rows == []  # quit is obeyed before the first step was due
+
+    def step_then_quit(player, rows):
+        for _ in range(3):
+            player.command("step")
+
+        def quit_after_three():
+            while player.played < 3:
+                time.sleep(0)
+            player.command("quit")
+
+        threading.Thread(target=quit_after_three, daemon=True).start()
+
+    rows, _ = play(log, playlist(log), Playhead(1.0, paused=True), until=step_then_quit)
+    assert contents(rows) == contents(messages(log.recording))[:3]
+
+
+def test_a_seek_begins_a_new_epoch_there(log):
+    chosen = playlist(log, Selection(topics=("world/image",)))
+
+    def jump(player, rows):
+        player.command("forward")
+
+    rows, _ = play(log, chosen, Playhead(0.0), until=jump)
+    later = [row for row in messages(log.recording) if row.topic == "world/image" and row.time_ns >= 5e9]
+    assert 0 < len(later) < FRAMES
+    assert contents(rows) == contents(later)
+
+
+def test_a_stretch_of_the_log_is_chosen_by_its_own_time(log):
+    chosen = playlist(log, start_s=2.0, duration_s=3.0)
+    first_ns = messages(log.recording)[0].time_ns
+    wanted = [row for row in messages(log.recording) if 2e9 <= row.time_ns - first_ns <= 5e9]
+    assert list(chosen.messages(chosen.start_ns)) == wanted
+
+
+def test_a_remapped_topic_is_played_under_its_new_name_and_owner(log):
+    chosen = playlist(log, Selection(topics=("world/image",)), {"world/image": "camera/image"})
+    assert chosen.topics == {"camera/image": "foxglove.CompressedImage"}
+    assert chosen.owners == {"camera/image": "world"}
+    assert {row.topic for row in chosen.messages(0)} == {"camera/image"}
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"remap": {"no/such": "a/b"}}, "--remap no/such: must be a topic of"),
+        ({"remap": {"world/image": "echo/drive"}}, "must not put two topics on one key"),
+        ({"owners": ("ghost",)}, "must hold messages of ghost"),
+        ({"selection": Selection(exclude=".")}, "must leave a key of"),
+    ],
+)
+def test_what_can_not_be_played_is_refused_by_name(log, options, said):
+    with pytest.raises(ConfigurationError, match=said):
+        playlist(log, **options)
+
+
+def test_a_strangers_log_is_refused(tmp_path):
+    with (tmp_path / "ros.mcap").open("wb") as stream:
+        writer = Writer(stream)
+        writer.start(profile="ros2")
+        channel = writer.register_channel(
+            "/scan", "cdr", writer.register_schema("sensor_msgs/LaserScan", "ros2msg", b"")
+        )
+        writer.add_message(channel, 0, b"", 0)
+        writer.finish()
+    with pytest.raises(ConfigurationError, match=r"ros\.mcap: must be a session recorded by berth"):
+        Playlist(Recording(tmp_path / "ros.mcap"), Selection(), {})
+
+
+@given(st.lists(st.integers(0, 9), max_size=60))
+def test_frames_are_put_in_order_if_none_comes_later_than_the_skew(frames):
+    captures = [frame + number for number, frame in enumerate(frames)]  # at most 9 behind the newest
+    rows = [Logged("a/b", "", b"", 1, number, capture, 0) for number, capture in enumerate(captures)]
+    assert list(in_frame_order(rows, 9)) == sorted(rows, key=lambda row: row.capture_ns)
+
+
+def stand_in(log, system, run, rate=0.0):
+    """A player in the world's place."""
+    session = description(run)
+    chosen = playlist(log, owners=("world",), known=run.topics, by_frame=True)
+    table = stands([log.component("world")], {"echo/drive", "recorder/ack"})
+    kinds: dict = {}
+    return chosen, joined_stage(run, session, chosen, kinds), Answers(table)
+
+
+def test_in_lockstep_a_log_replaces_a_component_and_every_frame_is_answered_as_before(log, tmp_path):
+    system = load(log.file, only=("echo", "recorder"), recording=tmp_path / "again.mcap")
+    with Supervisor(system) as supervisor:
+        run_to_end(supervisor, lambda: not supervisor.missing)
+        chosen, opened, answers = stand_in(log, system, find(system.realm))
+        with opened as stage:
+            player = Player(chosen, stage, Playhead(0.0), clock=False, answers=answers)
+            assert player.run() == "end of the log"
+        supervisor.stop("played")
+    assert (supervisor.exit_code, supervisor.lost) == (0, 0)
+    assert [status.malformed for status in supervisor.statuses.values()] == [0, 0]
+    before, again = by_key(messages(log.recording)), by_key(messages(tmp_path / "again.mcap"))
+    for key in ("world/image", "echo/drive"):
+        assert contents(again[key][:FRAMES]) == contents(before[key][:FRAMES])
+
+
+def test_who_runs_is_not_replaced(log):
+    system = load(log.file, ["world.frames=0"], recording=None)
+    with Supervisor(system) as supervisor:
+        run_to_end(supervisor, lambda: not supervisor.missing)
+        chosen, opened, _ = stand_in(log, system, find(system.realm))
+        with pytest.raises(ConfigurationError, match="--replace world: must not run in"), opened:
+            pass
+        assert chosen.owners["world/image"] == "world"
