@@ -4,7 +4,7 @@ import os
 import secrets
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 
 from runtime import supervise
-from runtime.bus import free_endpoint
+from runtime.bus import free_endpoint, open_observer
 from runtime.launch import System, load
 from runtime.link import Link
 from runtime.params import ConfigurationError
@@ -110,6 +110,24 @@ def test_clocks_ten_seconds_apart_break_nothing(tmp_path, monkeypatch, ahead):
         assert set(laptop.pids) == {"student", "witness"}
     for status in (*robot.statuses.values(), *laptop.statuses.values()):
         assert (status.malformed, status.lost, status.note) == (0, 0, "")
+
+
+def test_no_process_is_told_of_the_other_host_s_processes(tmp_path, monkeypatch):
+    """Here they could be reached; on two machines another process would be behind the same loopback address."""
+    both = pair(tmp_path)
+    with on("robot", both, tmp_path, monkeypatch) as robot, on("laptop", both, tmp_path, monkeypatch) as laptop:
+        follow(lambda: handled(laptop, "student") > 3, robot, laptop)
+        for half in (robot, laptop):
+            with open_observer(half.run.endpoint) as session:
+                follow(lambda info=session.info: len(info.peers_zid()) >= 2, robot, laptop)
+                follow(_after(robot, 8), robot, laptop)
+                assert len(session.info.peers_zid()) == len(half.pids) == 2
+                assert len(session.info.routers_zid()) == 1
+
+
+def _after(robot: Supervisor, frames: int) -> Callable[[], bool]:
+    first = handled(robot, "echo")
+    return lambda: handled(robot, "echo") > first + frames
 
 
 def test_the_end_of_the_session_ends_both_halves_and_the_recording_has_the_last_word(tmp_path, monkeypatch):
