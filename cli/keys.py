@@ -28,7 +28,7 @@ def pressed(call: Callable[[str], None]) -> Iterator[bool]:
     done = threading.Event()
     reader = threading.Thread(target=_read, args=(handle, call, done), daemon=True)
     try:
-        tty.setcbreak(handle)  # Ctrl-C stays a signal
+        tty.setcbreak(handle, termios.TCSADRAIN)  # Ctrl-C stays a signal; what was typed already counts
         reader.start()
         yield True
     finally:

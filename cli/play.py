@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -43,6 +44,7 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 _KEYS = {
     " ": "pause", ".": "step", "\x1b[C": "step", "q": "quit", "\x1b[D": "back", ",": "back", "\x1b[A": "forward"
 }  # fmt: skip
+_REALM = re.compile(r"[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 _HELP = "space pauses and goes on, . or -> plays one message, , or <- goes back 5 s, up goes on 5 s, q ends it"
 
 
@@ -123,6 +125,8 @@ def _remap(pairs: list[str]) -> dict[str, str]:
 def _own(playlist: Playlist, head: Playhead, realm: str, *, loop: bool) -> Iterator[Player]:
     """A player in a realm of its own."""
     realm = realm or f"replay/{playlist.launch.get('realm', 'unknown')}"
+    if not _REALM.fullmatch(realm):
+        raise ConfigurationError(f"--realm must be words joined by /; got {realm!r}")
     with own_stage(playlist, realm) as stage:
         sys.stderr.write(f"playing {len(playlist.topics)} topics in realm {realm}\n")
         yield Player(playlist, stage, head, loop=loop)

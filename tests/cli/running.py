@@ -4,10 +4,12 @@ import json
 import secrets
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 from runtime.launch import System, load
+from runtime.listener import Listener
 from runtime.recording import Logged, Recording
 from runtime.supervise import Supervisor
 
@@ -84,3 +86,27 @@ def is_growing(file: Path):
         return sizes[-1] > max(8192, next((size for size in sizes if size), 0))
 
     return condition
+
+
+class Ear(threading.Thread):
+    """Listens on a thread of its own."""
+
+    def __init__(self, run, keys):
+        super().__init__(daemon=True)
+        self._listener = Listener(run, keys, block=True)
+        self.rows: list[Logged] = []
+        self._done = threading.Event()
+
+    def run(self):
+        quiet = 0
+        while not (self._done.is_set() and quiet > 2):
+            heard = self._listener.take(0.05)
+            quiet = quiet + 1 if heard is None else 0
+            if heard is not None:
+                self.rows.append(Logged(heard.key, heard.schema, heard.payload, *heard.stamp, 0))
+
+    def finish(self):
+        self._done.set()
+        self.join(DEADLINE_S)
+        with self._listener:
+            assert (self._listener.dropped, self._listener.refused) == (0, 0)

@@ -13,7 +13,6 @@ from runtime import listener
 from runtime.answers import Answers, stands
 from runtime.joining import description
 from runtime.launch import load
-from runtime.listener import Listener
 from runtime.params import ConfigurationError
 from runtime.player import Player
 from runtime.playhead import Playhead
@@ -23,11 +22,10 @@ from runtime.runfile import find
 from runtime.selection import Selection
 from runtime.stage import joined_stage, own_stage
 from runtime.supervise import Supervisor
-from tests.cli.running import by_key, messages, recorded_system, run_to_end
+from tests.cli.running import Ear, by_key, messages, recorded_system, run_to_end
 
 pytestmark = pytest.mark.xdist_group("live")
 FRAMES = 120
-DEADLINE_S = 30.0
 
 
 @pytest.fixture(scope="module")
@@ -43,30 +41,6 @@ def log(tmp_path_factory):
 
 def playlist(log, selection=None, remap=None, **options) -> Playlist:
     return Playlist(Recording(log.recording), selection or Selection(), remap or {}, **options)
-
-
-class Ear(threading.Thread):
-    """Listens on a thread of its own."""
-
-    def __init__(self, run, keys):
-        super().__init__(daemon=True)
-        self._listener = Listener(run, keys, block=True)
-        self.rows: list[Logged] = []
-        self._done = threading.Event()
-
-    def run(self):
-        quiet = 0
-        while not (self._done.is_set() and quiet > 2):
-            heard = self._listener.take(0.05)
-            quiet = quiet + 1 if heard is None else 0
-            if heard is not None:
-                self.rows.append(Logged(heard.key, heard.schema, heard.payload, *heard.stamp, 0))
-
-    def finish(self):
-        self._done.set()
-        self.join(DEADLINE_S)
-        with self._listener:
-            assert (self._listener.dropped, self._listener.refused) == (0, 0)
 
 
 @contextmanager
