@@ -20,6 +20,7 @@ BENCHMARKS = {
     "speed": "lockstep on the bus and in one process against real time",
     "latency": "frame to command against a bare chain of as many processes",
     "stopping": "Ctrl-C and kill -9 of each process: how fast the robot stops",
+    "recorder": "what the recorder costs and loses, and what a kill -9 costs",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
 }
 """Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
