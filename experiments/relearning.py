@@ -110,6 +110,8 @@ def check_snapshots(sessions: Sequence[HandedOver], learned: Learned) -> Snapsho
         live = live[:-1]  # its stop came at the end of its session; here the log went on
     if not live:
         return SnapshotCheck(None, 0, "no snapshot of the live learner to compare with")
+    if sessions[0].restarted:
+        return SnapshotCheck(None, 0, "the live learner was started again and knew nothing then: no hash to compare")
     for number, (version, digest) in enumerate(live, start=1):
         if again.get(version) != digest:
             words = f"snapshot {number} of {len(live)}: another hash than live, at policy version {version}"

@@ -13,6 +13,7 @@ from mcap.records import Channel, Schema
 
 from runtime.journal import entries
 from runtime.mcap_items import Fault, RawMessage
+from runtime.params import ConfigurationError
 from runtime.recording import Recording, run_of
 from runtime.window import SEQUENCE_MASK
 from schemas.session_pb2 import Journal
@@ -74,7 +75,11 @@ class Examination:
         self.messages = 0
 
     def run(self) -> list[Finding]:
-        """Everything that is wrong, in no more than a few lines a kind."""
+        """Everything that is wrong.
+
+        Raises:
+            ConfigurationError: it is somebody else's file.
+        """
         self._look_at_head()
         faults: list[Fault] = []
         for item in self._recording.items(faults):
@@ -97,9 +102,11 @@ class Examination:
             self._found[key] = self._found.get(key, 0) + 1
 
     def _look_at_head(self) -> None:
-        if not self._recording.session():
+        session, launch = self._recording.session(), self._recording.launch()
+        if not session and not launch:
+            raise ConfigurationError(f"{self._recording.file}: must be a session of ours; it does not describe itself")
+        if not session:
             self._note("session", "no metadata of a session of ours")
-        launch = self._recording.launch()
         if not launch:
             self._note("session", "no launch file")
         specs = launch.get("components", ())

@@ -24,6 +24,8 @@ class HandedOver:
     """Messages of the further topics that were asked for."""
     order: str = "journal"
     """`journal`, or why the order of the file had to do."""
+    restarted: bool = False
+    """The component was started again within the session."""
 
 
 def handed_over(recording: Recording, spec: ComponentSpec, others: Iterable[str] = ()) -> HandedOver:
@@ -44,6 +46,7 @@ def handed_over(recording: Recording, spec: ComponentSpec, others: Iterable[str]
             journal.append(logged)
         if logged.topic in wanted:
             found.others.append(logged)
+    found.restarted = len({logged.run for logged in journal}) > 1
     try:
         found.inputs = _in_order(found.inputs, journal)
     except (ValueError, DecodeError) as reason:
