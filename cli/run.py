@@ -124,7 +124,11 @@ def _run_on_bus(system: System, watch: Watch, duration: float | None, link: Link
 def _report(recording: Path | None) -> str:
     from cli.report import write_report  # noqa: PLC0415
 
-    return str(write_report(recording)[0]) if recording is not None else ""
+    try:
+        return str(write_report(recording)[0]) if recording is not None else ""
+    except OSError as error:  # the disk that ended the recording is full for the report too
+        sys.stderr.write(f"berth: {recording}: there is no report: {error.strerror}\n")
+        return ""
 
 
 def _print(summary: Summary, *, as_json: bool) -> None:
