@@ -21,7 +21,7 @@ from runtime.answers import Answers, stands
 from runtime.clock import PacedClock
 from runtime.contract import ComponentError
 from runtime.joining import description
-from runtime.launch import ComponentSpec, ports_of
+from runtime.launch import ComponentSpec, System, ports_of
 from runtime.params import ConfigurationError
 from runtime.player import Player
 from runtime.playhead import Playhead
@@ -155,10 +155,20 @@ def _joined(playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, .
             stage,
             head,
             clock=False,
-            answers=Answers(stands(specs, own)) if lockstep else None,
+            answers=Answers(stands(specs, own), _frames(session.system)) if lockstep else None,
             stall_s=session.system.stall_s,
             capture=None if lockstep else now,
         )
+
+
+def _frames(system: System) -> set[str]:
+    """Keys on which a world shows its frames."""
+    return {
+        key
+        for spec in system.components
+        for port, key in spec.outputs.items()
+        if ports_of(spec.run).OUTPUTS[port].delayed
+    }
 
 
 def _specs(launch: Mapping[str, Any]) -> list[ComponentSpec]:

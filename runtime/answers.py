@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from threading import Lock
 
+from runtime.contract import ComponentError
 from runtime.launch import ComponentSpec, ports_of
 
 
@@ -40,9 +41,16 @@ def _of(spec: ComponentSpec, running: Collection[str]) -> Iterator[tuple[str, St
 class Answers:
     """The newest frame heard on each key, and the newest one shown."""
 
-    def __init__(self, table: dict[str, Stand]) -> None:
-        """Nothing was heard or shown."""
-        self._stands = table
+    def __init__(self, table: dict[str, Stand], frames: Collection[str] = ()) -> None:
+        """Nothing was heard or shown.
+
+        Args:
+            table: from `stands`.
+            frames: keys on which the running system shows its own frames, if its world is not replaced.
+        """
+        self.stands = table
+        self._frames = frames
+        self._time_ns: int | None = None
         self._heard: dict[str, int] = {}
         self._shown: list[int] = [-1, -1]
         """The last frame but one, and the last."""
@@ -51,26 +59,49 @@ class Answers:
     @property
     def keys(self) -> set[str]:
         """What to listen to."""
-        return {key for stand in self._stands.values() for key in stand.waits_for}
+        return {key for stand in self.stands.values() for key in stand.waits_for}
 
     def hear(self, key: str, capture_ns: int) -> None:
         """A message of the running system has come."""
         with self._lock:
             self._heard[key] = max(capture_ns, self._heard.get(key, -1))
 
+    def hear_time(self, capture_ns: int) -> None:
+        """A component's status has come: the running system is at this frame, even if we came too late for it."""
+        with self._lock:
+            self._time_ns = max(capture_ns, self._time_ns or 0)
+        for key in self._frames:
+            self.hear(key, capture_ns)
+
     def missing(self, key: str, capture_ns: int) -> str:
-        """The first key whose answer must come before a message may be played; empty = it may."""
-        stand = self._stands.get(key)
+        """The first key whose answer must come before a message may be played; empty = it may.
+
+        Raises:
+            ComponentError: the world's first frame lies before the running system's time.
+        """
+        stand = self.stands.get(key)
         if stand is None:
             return ""
+        if stand.delayed and self._shown[1] < 0:
+            return self._missing_time(capture_ns)
         needed_ns = capture_ns
         if stand.delayed:
             needed_ns = self._shown[1] if capture_ns > self._shown[1] else self._shown[0]
         with self._lock:
             return next((source for source in stand.waits_for if self._heard.get(source, -1) < needed_ns), "")
 
+    def _missing_time(self, capture_ns: int) -> str:
+        with self._lock:
+            time_ns = self._time_ns
+        if time_ns is not None and time_ns > capture_ns:
+            raise ComponentError(
+                f"the running system is at {time_ns / 1e9:.3f} s and can not go back to {capture_ns / 1e9:.3f} s; "
+                "start it anew, or play from there (--start-offset)"
+            )
+        return "*/status" if time_ns is None else ""
+
     def show(self, key: str, capture_ns: int) -> None:
         """A message was played."""
-        stand = self._stands.get(key)
+        stand = self.stands.get(key)
         if stand is not None and stand.delayed and capture_ns > self._shown[1]:
             self._shown = [self._shown[1], capture_ns]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from threading import Event
 
 import zenoh
@@ -72,8 +73,10 @@ class Player:
         self._reason = ""
         self.played = 0
         """Messages put on the bus."""
-        for key in answers.keys if answers is not None else ():
-            stage.listen(key, self._hears(key))
+        if answers is not None:
+            for key in answers.keys:
+                stage.listen(key, self._hears(partial(answers.hear, key)))
+            stage.listen("*/status", self._hears(answers.hear_time))
 
     @property
     def epochs(self) -> int:
@@ -180,15 +183,14 @@ class Player:
         self._stage.put(CLOCK_KEY, "berth.Playback", message.SerializeToString(deterministic=True), _OWNER, stamp)
         self._clock_stamp = stamp._replace(sequence=stamp.sequence + 1)
 
-    def _hears(self, key: str) -> Callable[[zenoh.Sample], None]:
+    def _hears(self, note: Callable[[int], None]) -> Callable[[zenoh.Sample], None]:
         def hear(sample: zenoh.Sample) -> None:
             attachment = sample.attachment
-            if attachment is None or self._answers is None:
-                return
             try:
-                self._answers.hear(key, unpack_stamp(attachment.to_bytes()).capture_ns)
+                if attachment is not None:
+                    note(unpack_stamp(attachment.to_bytes()).capture_ns)
+                    self._bell.set()
             except Refused:
                 return  # its readers count it
-            self._bell.set()
 
         return hear

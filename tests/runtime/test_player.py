@@ -11,6 +11,7 @@ from mcap.writer import Writer
 
 from runtime import listener
 from runtime.answers import Answers, stands
+from runtime.contract import ComponentError
 from runtime.joining import description
 from runtime.launch import load
 from runtime.params import ConfigurationError
@@ -193,27 +194,36 @@ def test_frames_are_put_in_order_if_none_comes_later_than_the_skew(frames):
     assert list(in_frame_order(rows, 9)) == sorted(rows, key=lambda row: row.capture_ns)
 
 
-def stand_in(log, system, run, rate=0.0):
-    """A player in the world's place."""
-    session = description(run)
-    chosen = playlist(log, owners=("world",), known=run.topics, by_frame=True)
-    table = stands([log.component("world")], {"echo/drive", "recorder/ack"})
-    kinds: dict = {}
-    return chosen, joined_stage(run, session, chosen, kinds), Answers(table)
+def stand_in(log, run, name):
+    """A player in a component's place, at full speed."""
+    spec = log.component(name)
+    others = {key for other in log.components if other is not spec for key in other.outputs.values()}
+    frames = others & {"world/image"}
+    chosen = playlist(log, owners=(name,), known=run.topics, by_frame=True)
+    return chosen, joined_stage(run, description(run), chosen, {}), Answers(stands([spec], others), frames)
 
 
-def test_in_lockstep_a_log_replaces_a_component_and_every_frame_is_answered_as_before(log, tmp_path):
-    system = load(log.file, only=("echo", "recorder"), recording=tmp_path / "again.mcap")
+def play_instead(log, name, file):
+    """Play a component in a system that runs without it; what was recorded, and the supervisor."""
+    system = load(log.file, ["world.frames=0"], only={"world", "echo", "recorder"} - {name}, recording=file)
     with Supervisor(system) as supervisor:
         run_to_end(supervisor, lambda: not supervisor.missing)
-        chosen, opened, answers = stand_in(log, system, find(system.realm))
+        chosen, opened, answers = stand_in(log, find(system.realm), name)
         with opened as stage:
             player = Player(chosen, stage, Playhead(0.0), clock=False, answers=answers)
             assert player.run() == "end of the log"
+            if name == "world":
+                with pytest.raises(ComponentError, match="can not go back to 0"):
+                    Player(chosen, stage, Playhead(0.0), clock=False, answers=Answers(answers.stands)).run()
         supervisor.stop("played")
     assert (supervisor.exit_code, supervisor.lost) == (0, 0)
     assert [status.malformed for status in supervisor.statuses.values()] == [0, 0]
-    before, again = by_key(messages(log.recording)), by_key(messages(tmp_path / "again.mcap"))
+    return by_key(messages(file))
+
+
+@pytest.mark.parametrize("name", ["world", "echo"])
+def test_in_lockstep_a_log_replaces_a_component_and_every_frame_is_answered_as_before(log, tmp_path, name):
+    before, again = by_key(messages(log.recording)), play_instead(log, name, tmp_path / "again.mcap")
     for key in ("world/image", "echo/drive"):
         assert contents(again[key][:FRAMES]) == contents(before[key][:FRAMES])
 
@@ -222,7 +232,7 @@ def test_who_runs_is_not_replaced(log):
     system = load(log.file, ["world.frames=0"], recording=None)
     with Supervisor(system) as supervisor:
         run_to_end(supervisor, lambda: not supervisor.missing)
-        chosen, opened, _ = stand_in(log, system, find(system.realm))
+        chosen, opened, _ = stand_in(log, find(system.realm), "world")
         with pytest.raises(ConfigurationError, match="--replace world: must not run in"), opened:
             pass
         assert chosen.owners["world/image"] == "world"

@@ -36,10 +36,11 @@ class Flood:
             return (Output("end", SessionEnd(reason="all sent")),)
         small = [Output("small", self._percept(event.time_ns))] * self._due("small", ports.SMALL_HZ * time_s)
         image = CompressedImage(frame_id="camera", format="jpeg", data=self._image)
-        return (*small, *[Output("image", image)] * self._due("image", ports.IMAGE_HZ * time_s))
+        return (*small, *[Output("image", image)] * self._due("image", ports.IMAGE_HZ * time_s, most=1))
 
-    def _due(self, port: str, count: float) -> int:
-        due = int(count) - self._sent[port]
+    def _due(self, port: str, count: float, most: int = ports.SMALL_HZ) -> int:
+        """A camera never gives several images in one instant."""
+        due = min(most, int(count) - self._sent[port])
         self._sent[port] += due
         return due
 
