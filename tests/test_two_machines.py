@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,6 +21,8 @@ pytestmark = pytest.mark.xdist_group("live")
 FRAME_NS = 125_000_000
 CUT_FRAMES = 24
 """Three seconds."""
+HOLE_FRAMES = 8
+"""Of a machine that is too busy for real time."""
 BACK_S = 3.0
 SLACK_S = 3.0
 """A test machine may be busy."""
@@ -144,14 +147,12 @@ def test_the_laptop_s_policies_drive_the_robot(story):
 
 def test_the_robot_keeps_its_policy_and_its_pace_while_the_link_is_down(story):
     assert story.versions[1] - story.versions[0] <= 2, "what was under way at the cut"
-    during = [
-        m
-        for m in story.robot.messages({"base/actuate"})
-        if story.cut_frame < m.capture_ns / FRAME_NS < story.mended_frame
-    ]
-    frames = {round(m.capture_ns / FRAME_NS) for m in during}
-    assert len(frames) >= 0.9 * (story.mended_frame - story.cut_frame - 1)
-    assert sum(m.decoded().v_mps != 0.0 for m in during) >= 0.8 * len(during)
+    commands = [(m.capture_ns / FRAME_NS, m.decoded()) for m in story.robot.messages({"base/actuate"})]
+    during = [(frame, command) for frame, command in commands if story.cut_frame <= frame <= story.mended_frame]
+    holes = [after - before for (before, _), (after, _) in pairwise(during)]
+    assert sum(holes) > CUT_FRAMES - HOLE_FRAMES
+    assert max(holes) < HOLE_FRAMES, "a link that blocks its publishers makes a hole of the length of the cut"
+    assert sum(command.v_mps != 0.0 for _, command in during) > len(during) / 2
 
 
 def test_the_session_says_that_the_link_was_down_and_is_back_in_time(story):
