@@ -29,6 +29,8 @@ from runtime.replay import replay
 
 CASES = 10_000
 SESSION_S = 1.5
+CHUNK_BYTES = 4096
+"""Small, so that one mutation spoils a part of the session and not all of it."""
 REPLAYED = ("head", "base", "grasper", "pilot")
 """Components whose start costs little; every fifth case is replayed by one of them."""
 
@@ -81,11 +83,11 @@ def _read(directory: Path, number: int) -> None:
 def _seeds(directory: Path) -> tuple[bytes, bytes]:
     """A short session of the simulation as it was recorded, and the same without compression and checksums."""
     file = directory / "case.mcap"
-    system = load("launch/sim.toml", recording=file)
+    system = load("launch/sim.toml", [f"recorder.chunk_bytes={CHUNK_BYTES}"], recording=file)
     run_in_process(system, Watch(Progress("", quiet=True)), "", SESSION_S)
     content = file.read_bytes()
     bare = BytesIO()
-    writer = Writer(bare, compression=CompressionType.NONE, enable_crcs=False)
+    writer = Writer(bare, chunk_size=CHUNK_BYTES, compression=CompressionType.NONE, enable_crcs=False)
     for item in items(BytesIO(content), []):
         _copy(writer, item)
     writer.finish()

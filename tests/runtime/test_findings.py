@@ -1,5 +1,7 @@
 """The doctor of recordings: a healthy one has nothing, and each fault is found by its kind."""
 
+import struct
+
 import pytest
 
 from runtime.findings import Examination
@@ -79,6 +81,15 @@ def data_end(file) -> int:
         return stream.tell()
 
 
+def chunk_offsets(content: bytes) -> list[int]:
+    at, found = 8, []
+    while at < len(content) - 8:
+        code, length = struct.unpack_from("<BQ", content, at)
+        found += [at] if code == 0x06 else []
+        at += 9 + length
+    return found
+
+
 def test_a_torn_file_is_named_where_it_is_torn_and_mended_as_far_as_it_goes(session, tmp_path):
     torn = tmp_path / "torn.mcap"
     torn.write_bytes(session.read_bytes()[: data_end(session) - 100])
@@ -96,7 +107,8 @@ def test_a_torn_file_is_named_where_it_is_torn_and_mended_as_far_as_it_goes(sess
 def test_mending_passes_over_a_damaged_chunk_and_says_what_it_cost(tmp_path):
     session = small_session(tmp_path, ["world.frames=300"])
     content = bytearray(session.read_bytes())
-    content[data_end(session) - 4000] ^= 0xFF
+    chunks = chunk_offsets(content)
+    content[chunks[len(chunks) // 2] + 100] ^= 0xFF
     damaged = tmp_path / "damaged.mcap"
     damaged.write_bytes(content)
     mended = mend(Recording(damaged), tmp_path / "mended.mcap")
