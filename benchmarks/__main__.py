@@ -21,6 +21,9 @@ BENCHMARKS = {
     "latency": "frame to command against a bare chain of as many processes",
     "stopping": "Ctrl-C and kill -9 of each process: how fast the robot stops",
     "recorder": "what the recorder costs and loses, and what a kill -9 costs",
+    "replay": "a live session of 5 minutes, every component replayed: share of equal outputs, speed",
+    "relearn": "learning again from 40 robot-minutes against reading the same channels with the mcap library",
+    "fuzz_reader": "ten thousand spoiled recordings through everything that reads one",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
 }
 """Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
