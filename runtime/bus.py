@@ -110,6 +110,8 @@ def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str,
         "scouting/delay": 50,
         # Leaves segments in /dev/shm behind when killed, and images of 10 kB gain nothing.
         "transport/shared_memory/enabled": False,
+        # Images in a queue of two are lost to a recorder that a busy machine keeps waiting for a tenth of a second.
+        "transport/link/tx/queue/size/data_low": 8,
         **more,
     }
     for key, value in options.items():

@@ -48,7 +48,7 @@ def test_a_full_disk_is_told_once_and_what_was_flushed_is_kept(tmp_path, system,
     write(log, 100, first=100)
     with pytest.raises(ComponentError, match=r"full\.mcap: can not be written any more: File too large; it is kept up"):
         log.flush()
-    write(log, 100, first=200)
+    write(log, 100, first=200, size=10_000)
     log.flush()
     log.close()
     assert sequences(file) == list(range(100))
