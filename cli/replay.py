@@ -101,7 +101,8 @@ def _verdict(report: Report) -> Iterator[str]:
         yield "recorded on another machine or with other libraries: real numbers are compared with a tolerance of 1e-6"
     identical, different = report.count("identical"), report.count("different")
     if not identical + different and not any(comparison.has_record for comparison in report.comparisons):
-        yield f"nothing to compare: the recording holds nothing that {report.component} said"
+        held = f"the recording holds nothing that {report.component} said"
+        yield f"nothing to compare: {held}" if report.outputs else f"identical: {held}, and it says nothing"
         return
     yield from (str(difference) for difference in report.first)
     missing = [
