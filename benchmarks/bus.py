@@ -10,8 +10,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.supervise import Supervisor
+from runtime.system import System
 
 FRAME_S = 0.125
 _TIMEOUT_S = 120.0

@@ -17,10 +17,11 @@ from typing import NamedTuple
 
 from benchmarks.bus import cpu_s, ring
 from benchmarks.figure import Figure
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.log import LogWriter
 from runtime.recording import Recording
 from runtime.supervise import Supervisor
+from runtime.system import System
 
 SECONDS = 60.0
 KILLS = 20

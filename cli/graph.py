@@ -9,7 +9,8 @@ from typing import Annotated
 
 import typer
 
-from runtime.launch import System, load, ports_of
+from runtime.launch import load
+from runtime.system import System, ports_of
 from runtime.wiring import Wire, wires
 
 LAUNCH = Annotated[Path, typer.Argument(help="Launch file.")]

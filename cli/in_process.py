@@ -9,8 +9,8 @@ from types import FrameType
 from typing import Any
 
 from cli.session import Watch
-from runtime.launch import ComponentSpec, System, class_of, params_of
 from runtime.lockstep import Lockstep, Tap
+from runtime.system import ComponentSpec, System, class_of, params_of
 
 
 def run_in_process(system: System, watch: Watch, started: str, duration_s: float | None) -> str:

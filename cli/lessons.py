@@ -13,10 +13,10 @@ from experiments.logged_trials import trials_of
 from experiments.prediction import Prediction, predict
 from experiments.relearning import Inputs, Learned, SnapshotCheck, check_snapshots, inputs_of, relearn
 from runtime.handed_over import HandedOver, handed_over
-from runtime.launch import ComponentSpec, params_of, ports_of
 from runtime.params import ConfigurationError
 from runtime.recorded_system import recorded_component
 from runtime.recording import Recording
+from runtime.system import ComponentSpec, params_of, ports_of
 
 FIGURES = {
     "known_percent": "held-out transitions that the model knows, %",

@@ -8,9 +8,9 @@ from typing import Any
 from cli.in_process import on_signal
 from cli.session import Watch
 from runtime.bus import ALONE
-from runtime.launch import System
 from runtime.link import Link
 from runtime.supervise import Supervisor
+from runtime.system import System
 
 _BACKLOG = 100_000
 """Messages from zenoh's threads that wait for the scoreboard; more than ten minutes of robot time."""

@@ -21,7 +21,6 @@ from runtime.answers import Answers, stands
 from runtime.clock import PacedClock
 from runtime.contract import ComponentError
 from runtime.joining import description
-from runtime.launch import ComponentSpec, System, ports_of
 from runtime.params import ConfigurationError
 from runtime.player import Player
 from runtime.playhead import Playhead
@@ -29,6 +28,7 @@ from runtime.playlist import Playlist
 from runtime.recording import Recording
 from runtime.runfile import Run, find
 from runtime.stage import joined_stage, own_stage
+from runtime.system import ComponentSpec, System, ports_of
 
 FILE = Annotated[Path, typer.Argument(help="Session to play; a torn one is played up to its tear.")]
 RATE = Annotated[float, typer.Option("-r", "--rate", help="Log seconds per second; 0 = as fast as possible.", min=0.0)]

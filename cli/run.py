@@ -13,9 +13,10 @@ from rich.console import Console
 from cli.progress import Progress
 from cli.session import Summary, Watch, now, recording_name
 from runtime.contract import ComponentError
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.link import Link, checked_link
 from runtime.params import ConfigurationError
+from runtime.system import System
 
 GOOD_ENDS = ("duration", "interrupted")
 """Reasons that are no failure, beside the end that the system itself declares."""

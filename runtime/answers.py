@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from threading import Lock
 
 from runtime.contract import ComponentError
-from runtime.launch import ComponentSpec, ports_of
+from runtime.system import ComponentSpec, ports_of
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 
-from runtime.launch import System
+from runtime.system import System
 
 READY_TIMEOUT_S = 120.0
 """A first start compiles for a minute on a small machine; a crash is noticed at once, without this."""

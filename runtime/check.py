@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from runtime.contract import Event
 from runtime.hosted import Hosted, Sample
-from runtime.launch import ComponentSpec, System
 from runtime.lockstep import Lockstep
 from runtime.params import ConfigurationError
+from runtime.system import ComponentSpec, System
 
 SHELL_EVENTS = ("tick", "gone", "stall", "stop")
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from google.protobuf.message import DecodeError
 
 from runtime.journal import entries
-from runtime.launch import ComponentSpec
 from runtime.recording import Logged, Recording
+from runtime.system import ComponentSpec
 from runtime.window import SEQUENCE_MASK
 from schemas.session_pb2 import Journal
 

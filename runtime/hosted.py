@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from runtime.contract import ComponentError, Event, Output, Port
-from runtime.launch import ComponentSpec, class_of, params_of
+from runtime.system import ComponentSpec, class_of, params_of
 from schemas.session_pb2 import Journal
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Collection
 from types import TracebackType
 from typing import Self
@@ -9,11 +10,13 @@ from typing import Self
 from runtime.bus import direct, open_observer, parse_ready_key, ready_keys
 from runtime.door import FAILURE, Door, Lane
 from runtime.inbox import Arrival, Inbox, Notice
-from runtime.presence import LISTENS, Presence, watch
+from runtime.joining import await_links
+from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.runfile import Run
 from runtime.wire import encoding_of_name
 
 _QUEUE = 8192
+_RUN_IN_S = 0.3
 _SUPERVISOR = "supervisor"
 
 
@@ -40,13 +43,26 @@ class Listener:
         for key in keys:
             encoding = encoding_of_name(run.topics[key])
             self._door.add(f"{run.realm}/{key}", Lane(self._box, key, encoding, publisher=""))
-        for reply in self._session.liveliness().get(ready_keys(run.realm), timeout=1.0):
-            if reply.ok is not None:
-                _, name, number = parse_ready_key(str(reply.ok.key_expr))
-                self._door.announce(name, number, first=None)  # it has been talking before we came
+        present = self._present(run.realm)
+        for _, name, number in present:
+            self._door.announce(name, number, first=None)  # it has been talking before we came
+        await_links(self._session, len({name for _, name, _ in present} - {_SUPERVISOR}))
         watch(self._session, run.realm, self._presence, self._changed, self._failed)
         for key in keys:
             self._session.declare_subscriber(f"{run.realm}/{key}", direct(self._door.receive))
+        self._present(run.realm)  # whoever has answered this knows of our subscriptions
+        if any(stage == STARTS and name != _SUPERVISOR for stage, name, _ in present):
+            self._run_in()
+
+    def _present(self, realm: str) -> list[tuple[int, str, int]]:
+        replies = self._session.liveliness().get(ready_keys(realm), timeout=1.0)
+        return [parse_ready_key(str(reply.ok.key_expr)) for reply in replies if reply.ok is not None]
+
+    def _run_in(self) -> None:
+        """Forget the first moments: zenoh loses some messages while its routes to a late subscriber settle (seen)."""
+        until_s = time.monotonic() + _RUN_IN_S
+        while (left_s := until_s - time.monotonic()) > 0:
+            self.take(left_s)
 
     def _changed(self, appeared: bool, stage: int, name: str, run: int) -> None:
         if appeared and stage == LISTENS:

@@ -15,8 +15,8 @@ from runtime.clock import TickSchedule
 from runtime.contract import GONE, STALL, STOP, TICK, ComponentError, Event, Stall, Tick
 from runtime.hosted import Hosted, Sample
 from runtime.journal import JournalWriter
-from runtime.launch import System
 from runtime.messages import message_class
+from runtime.system import System
 
 
 class Tap(Protocol):

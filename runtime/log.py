@@ -17,9 +17,9 @@ from mcap.writer import CompressionType, Writer
 
 from runtime.contract import ComponentError
 from runtime.fingerprint import fingerprint
-from runtime.launch import System
 from runtime.messages import descriptor_set
 from runtime.params import ConfigurationError
+from runtime.system import System
 
 LIBRARY = "berth"
 SESSION = "berth.session"

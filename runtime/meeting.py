@@ -9,9 +9,9 @@ from pathlib import Path
 import zenoh
 
 from runtime.bus import direct
-from runtime.launch import System
 from runtime.neighbours import HERE, OVER, Half, Neighbours, Verdict, half_keys, parse_half
 from runtime.params import ConfigurationError
+from runtime.system import System
 
 
 class Meeting:

@@ -7,7 +7,7 @@ import json
 import re
 from typing import NamedTuple
 
-from runtime.launch import System, ports_of
+from runtime.system import System, ports_of
 
 HERE, OVER = "@half", "@over"
 """Verbatim chunks: `REALM/**` does not match them. The second one is declared at an orderly end."""

@@ -17,10 +17,10 @@ import traceback
 from runtime.assignment import Assignment
 from runtime.contract import ComponentError
 from runtime.hosted import Hosted
-from runtime.launch import class_of, params_of, ports_of
 from runtime.live import Fold, is_on_control_path
 from runtime.params import ConfigurationError
 from runtime.station import Station, Stop
+from runtime.system import class_of, params_of, ports_of
 from runtime.tap import Tap
 from runtime.wire import new_run
 

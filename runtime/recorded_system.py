@@ -7,9 +7,10 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from runtime.launch import ComponentSpec, System, resolve
+from runtime.launch import resolve
 from runtime.params import ConfigurationError
 from runtime.recording import Recording
+from runtime.system import ComponentSpec, System
 
 _PACKAGE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 _SHARED = ("task", "clock")

@@ -11,12 +11,12 @@ from runtime.comparison import Comparison, Difference
 from runtime.contract import Port
 from runtime.fingerprint import fingerprint
 from runtime.hosted import Sample
-from runtime.launch import ComponentSpec, ports_of
 from runtime.mcap_items import Fault
 from runtime.params import ConfigurationError
 from runtime.recorded_system import recorded_component
 from runtime.recording import Logged, Recording
 from runtime.rerun import Outcome, Rerun
+from runtime.system import ComponentSpec, ports_of
 from runtime.window import Window
 
 

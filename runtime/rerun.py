@@ -12,7 +12,7 @@ from google.protobuf.message import DecodeError
 from runtime.contract import GONE, STOP, Event
 from runtime.hosted import Hosted, Sample
 from runtime.journal import Entry, entries
-from runtime.launch import ComponentSpec
+from runtime.system import ComponentSpec
 from runtime.window import Window
 from schemas.session_pb2 import Journal
 

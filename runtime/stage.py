@@ -13,13 +13,13 @@ import zenoh
 from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import direct, free_endpoint, open_observer, open_router, ready_key
 from runtime.contract import ComponentError, Kind
-from runtime.joining import describe
-from runtime.launch import System
+from runtime.joining import await_links, describe
 from runtime.params import ConfigurationError
 from runtime.playlist import Playlist
 from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL, Qos, qos
 from runtime.runfile import Run, claim
+from runtime.system import System
 from runtime.wire import Stamp, encoding_of_name, new_run, pack_stamp
 
 CLOCK_KEY = "player/clock"
@@ -137,4 +137,5 @@ def joined_stage(run: Run, session: Assignment, playlist: Playlist, kinds: Mappi
         watch(bus, run.realm, presence, lambda *_: None, lambda _: None)
         if not presence.wait(STARTS, READY_TIMEOUT_S):
             raise ComponentError(f"no sign of {', '.join(presence.missing(STARTS))} in {run.realm}")
+        await_links(bus, len(run.components))
         yield Stage(bus, run.realm, {key: qos(kind, session.system.clock) for key, kind in kinds.items()})

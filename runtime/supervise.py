@@ -18,7 +18,6 @@ from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import ALONE, direct, free_endpoint, open_router, ready_key
 from runtime.child import Child
 from runtime.joining import describe
-from runtime.launch import ComponentSpec, System
 from runtime.link import Link
 from runtime.live import HOLD_KEY
 from runtime.meeting import Meeting
@@ -28,6 +27,7 @@ from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL
 from runtime.restart import Restarts
 from runtime.runfile import Run, claim
+from runtime.system import ComponentSpec, System
 from runtime.tap import known_keys
 from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
 from schemas.session_pb2 import Hold, Status

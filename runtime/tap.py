@@ -10,10 +10,10 @@ from runtime.clock import SECOND_NS, FrameClock, PacedClock
 from runtime.contract import Output
 from runtime.door import FAILURE
 from runtime.inbox import Arrival
-from runtime.launch import System, ports_of
 from runtime.live import HOLD_KEY
 from runtime.outlet import Outlet
 from runtime.station import Station
+from runtime.system import System, ports_of
 from schemas.session_pb2 import Hold, Journal, Status
 
 _QUEUE = 4096

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from runtime.contract import Peers, Port
-from runtime.launch import ComponentSpec, System, ports_of
 from runtime.params import ConfigurationError
+from runtime.system import ComponentSpec, System, ports_of
 
 
 class Wire(NamedTuple):

@@ -10,7 +10,8 @@ from typing import NamedTuple
 from cli.in_process import run_in_process
 from cli.progress import Progress
 from cli.session import Watch
-from runtime.launch import System, load
+from runtime.launch import load
+from runtime.system import System
 
 ROOT = Path(__file__).parent.parent
 LAUNCH = ROOT / "launch" / "sim.toml"

@@ -13,8 +13,9 @@ from docking.plant import advance
 from report.session import read
 from runtime.contract import Event
 from runtime.hosted import Hosted
-from runtime.launch import load, ports_of
+from runtime.launch import load
 from runtime.recording import Logged, Recording
+from runtime.system import ports_of
 from schemas.drive_pb2 import BaseCommand, Drive
 from schemas.policy_pb2 import Policy
 from schemas.session_pb2 import Journal

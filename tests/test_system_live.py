@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from benchmarks.watched import START_S, Watched, is_alive, wait_until, watched
-from runtime.launch import load, ports_of
+from runtime.launch import load
 from runtime.recording import Recording
+from runtime.system import ports_of
 from schemas.drive_pb2 import BaseCommand
 from tests.recorded_session import LAUNCH
 

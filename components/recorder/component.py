@@ -7,8 +7,8 @@ from pathlib import Path
 from components.recorder import ports
 from components.recorder.gaps import Gaps
 from runtime.contract import Output
-from runtime.launch import System
 from runtime.log import LogWriter
+from runtime.system import System
 from schemas.session_pb2 import Gap, RecorderAck
 
 _FRAME = "foxglove.CompressedImage"

@@ -8,10 +8,11 @@ import threading
 import time
 from pathlib import Path
 
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.listener import Listener
 from runtime.recording import Logged, Recording
 from runtime.supervise import Supervisor
+from runtime.system import System
 
 DEADLINE_S = 30.0
 

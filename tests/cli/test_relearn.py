@@ -7,9 +7,10 @@ import pytest
 from cli.lessons import learn
 from cli.relearn import relearn
 from docking.policy import PolicyTable
-from runtime.launch import load, params_of
+from runtime.launch import load
 from runtime.params import ConfigurationError
 from runtime.recording import Recording
+from runtime.system import params_of
 from tests.cli.test_replay import berth
 from tests.recorded_session import LAUNCH
 from tests.runtime.offline import rewritten, small_session, without

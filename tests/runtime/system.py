@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.supervise import Supervisor
+from runtime.system import System
 
 DEADLINE_S = 30.0
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.params import ConfigurationError
+from runtime.system import System
 from runtime.wiring import wires
 
 SIM = Path(__file__).parent.parent.parent / "launch" / "sim.toml"

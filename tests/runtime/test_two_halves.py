@@ -14,11 +14,12 @@ import pytest
 
 from runtime import supervise
 from runtime.bus import free_endpoint, open_observer
-from runtime.launch import System, load
+from runtime.launch import load
 from runtime.link import Link
 from runtime.params import ConfigurationError
 from runtime.presence import STARTS
 from runtime.supervise import Supervisor
+from runtime.system import System
 from schemas.drive_pb2 import BaseCommand
 from tests.runtime.system import DEADLINE_S, heard
 

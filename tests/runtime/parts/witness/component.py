@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from runtime.contract import Output
-from runtime.launch import System
+from runtime.system import System
 from schemas.session_pb2 import RecorderAck
 from tests.runtime.parts.witness import ports
 
