@@ -33,8 +33,8 @@ class Task:
     """Tilt when the object can be picked up. Ours, as the simulated camera reads it with the gripper at its pose 0.28 m
     ahead: 0.6 deg less than atan(0.45 / 0.28), because the nearer half of a can takes more pixels than the other."""
     tilt_limit_rad: float = between(58.5 * DEG, 0.0, 1.57)
-    """Sink: nearer to the edge than a robot that sees the object straight ahead at this tilt. Ours: 0.276 m from axle to
-    object: room for the 3.2 cm that it needs to stop from 0.1 m/s, and a centimetre more."""
+    """Sink: nearer to the edge than a robot that sees the object straight ahead at this tilt. Ours: 0.276 m from axle
+    to object: room for the 3.2 cm that it needs to stop from 0.1 m/s, and a centimetre more."""
     start_tilt_min_rad: float = between(12.7 * DEG, 0.0, 1.57)
     """`reverse()` ends at a tilt drawn between this (2 m away) ..."""
     start_tilt_max_rad: float = between(24.2 * DEG, 0.0, 1.57)
