@@ -3,7 +3,7 @@
 import random
 import time
 
-from runtime.contract import STOP, Event, Output
+from runtime.contract import GONE, STOP, Event, Output
 from schemas.drive_pb2 import BaseCommand
 from tests.runtime.parts.fickle import ports
 
@@ -22,6 +22,8 @@ class Fickle:
     def handle(self, event: Event) -> tuple[Output, ...]:
         if event.port == STOP:
             return ()
+        if event.port == GONE:
+            return (Output("drive", BaseCommand(v_mps=float(len(event.message)))),)
         if self._params.fault == "raises" and event.capture_ns > 2_000_000_000:
             raise RuntimeError("told to raise")
         self._sum += self._params.gain * event.capture_ns / 1e9

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from runtime.contract import Kind, Port
+from runtime.contract import Kind, Peers, Port
 from runtime.params import one_of
 from schemas.drive_pb2 import BaseCommand
 from schemas.image_pb2 import CompressedImage
@@ -14,5 +14,5 @@ class Params:
     gain: float = 1.0
 
 
-INPUTS = {"image": Port(CompressedImage, Kind.IMAGE, queue=1, per_frame=True)}
+INPUTS = {"image": Port(CompressedImage, Kind.IMAGE, queue=1, per_frame=True), "gone": Peers()}
 OUTPUTS = {"drive": Port(BaseCommand, Kind.COMMAND, per_frame=True, on=("image",))}
