@@ -21,6 +21,7 @@ from runtime.contract import ComponentError, Output
 from runtime.inbox import Arrival
 from runtime.joining import description
 from runtime.listener import Listener
+from runtime.messages import descriptor_set
 from runtime.params import ConfigurationError
 from runtime.runfile import find
 from runtime.wire import new_run
@@ -52,6 +53,8 @@ def record(
     keys = [key for key in run.topics if wanted.takes(key)]
     session = description(run)
     transcript = Transcript(output, session)
+    for schema in run.topics.values():
+        descriptor_set(schema)  # now, not while the first messages come
     with Listener(run, keys, block=session.system.clock == "lockstep") as listener:
         sys.stderr.write(f"recording {len(keys)} topics of {run.realm} into {output}; Ctrl-C ends it\n")
         reason = _follow(listener, transcript, duration)

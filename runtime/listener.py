@@ -50,7 +50,7 @@ class Listener:
         watch(self._session, run.realm, self._presence, self._changed, self._failed)
         for key in keys:
             self._session.declare_subscriber(f"{run.realm}/{key}", direct(self._door.receive))
-        self._present(run.realm)  # whoever has answered this knows of our subscriptions
+        present += self._present(run.realm)  # whoever has answered this knows of our subscriptions
         if any(stage == STARTS and name != _SUPERVISOR for stage, name, _ in present):
             self._run_in()
 
