@@ -90,3 +90,16 @@ def test_an_empty_log_predicts_nothing():
     assert found.trials == found.transitions == 0
     assert math.isnan(found.one_step_error)
     assert math.isnan(found.controllable_percent)
+
+
+def test_a_trial_is_never_predicted_from_itself():
+    apart = [LoggedTrial([step(cell, cell + 1)], 4) for cell in (0, 1, 5, 6, 15, 16, 20, 21)]
+    assert predict(PARAMS, apart, None).known_percent == 0.0
+
+
+def test_a_mirrored_trial_takes_as_long_as_its_image():
+    image = [GRID.mirrored(cell) for cell in CORRIDOR]
+    mirrored = LoggedTrial([step(image[0], image[1], action=1), step(image[1], GOAL, action=1)], frames=8)
+    found = predict(replace(PARAMS, mirror=True), [*[docking()] * 9, mirrored], None)
+    assert found.known_percent == 100.0
+    assert found.duration_error_s == pytest.approx(0.0, abs=1e-6)
