@@ -17,8 +17,10 @@ from mcap.writer import CompressionType, Writer
 from benchmarks.figure import Figure
 from benchmarks.mutations import mutated
 from cli.in_process import run_in_process
+from cli.info import numbers
 from cli.progress import Progress
 from cli.session import Watch
+from report.session import read
 from runtime.findings import Examination
 from runtime.launch import load
 from runtime.mcap_items import RawMessage, items
@@ -66,16 +68,16 @@ def figures() -> list[Figure]:
 
 
 def _read(directory: Path, number: int) -> None:
-    """Info, doctor, recover, and now and then a replay."""
+    """What info, doctor, recover and, now and then, replay do."""
     mended = directory / "mended.mcap"
     mended.unlink(missing_ok=True)
     recording = Recording(directory / "case.mcap")
     recording.session()
-    recording.topics()
     for logged in recording.messages():
         logged.decoded()
     if number % 5 == 0:
         replay(recording, REPLAYED[number // 5 % len(REPLAYED)])
+    numbers(read(recording.file), recording.topics())
     Examination(recording).run()
     mend(recording, mended)
 

@@ -26,15 +26,16 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 def info(file: FILE, as_json: JSON = False) -> None:
     """Describe a recording; exit code 3 if something is missing. Example: berth info recordings/sim.mcap."""
     session, topics = read(file), Recording(file).topics()
-    numbers = _numbers(session, topics)
+    found = numbers(session, topics)
     if as_json:
-        sys.stdout.write(json.dumps({**numbers, "topics": [vars(topic) for topic in topics]}) + "\n")
+        sys.stdout.write(json.dumps({**found, "topics": [vars(topic) for topic in topics]}) + "\n")
     else:
-        _print(numbers, topics)
+        _print(found, topics)
     raise typer.Exit(GOOD if session.whole and not session.lost else LOSSY)
 
 
-def _numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
+def numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
+    """What is told of a session, by name."""
     counts = dict(outcomes(session.trials))
     succeeded = sum(trial.reached or trial.picked for trial in session.trials)
     return {
@@ -65,14 +66,14 @@ def _state(session: Session, topics: list[Topic]) -> str:
     return "; ".join(words) or "complete"
 
 
-def _print(numbers: dict[str, object], topics: list[Topic]) -> None:
+def _print(found: dict[str, object], topics: list[Topic]) -> None:
     console = Console(soft_wrap=True, width=None if sys.stdout.isatty() else _WIDTH)
-    for name, value in numbers.items():
+    for name, value in found.items():
         console.print(f"{name:16} {'-' if value is None else value}", highlight=False)
     table = Table("topic", "schema", "run")
     for head in ("messages", "Hz", "bytes", "gaps", "lost"):
         table.add_column(head, justify="right")
     for topic in topics:
-        numbers_of = (topic.count, f"{topic.hz:.2f}", topic.bytes, topic.gaps, topic.lost)
-        table.add_row(topic.topic, topic.schema, f"{topic.run:016x}", *map(str, numbers_of))
+        row = (topic.count, f"{topic.hz:.2f}", topic.bytes, topic.gaps, topic.lost)
+        table.add_row(topic.topic, topic.schema, f"{topic.run:016x}", *map(str, row))
     console.print(table)

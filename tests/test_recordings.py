@@ -3,10 +3,13 @@ what has changed; if it was meant to change, `recordings/make.sh` records anew.
 """
 
 import itertools
+import json
 from pathlib import Path
 
 import pytest
+import typer
 
+from cli.info import info
 from report.session import read
 from runtime.findings import Examination
 from runtime.mend import mend
@@ -14,6 +17,7 @@ from runtime.recording import Recording
 from runtime.replay import replay
 from schemas.percept_pb2 import Percept
 from schemas.trial_pb2 import Trial
+from tests.runtime.offline import rewritten, without
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 NAMES = ("docking", "reverse", "lost", "cut")
@@ -77,3 +81,26 @@ def test_one_is_torn_and_can_be_mended(tmp_path):
     assert mended.messages > 1000
     assert Recording(tmp_path / "mended.mcap").whole()
     assert not replay(Recording(tmp_path / "mended.mcap"), "base").differs
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_info_says_complete_or_torn(name, capsys):
+    with pytest.raises(typer.Exit) as end:
+        info(FOLDER / f"{name}.mcap", as_json=True)
+    found = json.loads(capsys.readouterr().out)
+    assert end.value.exit_code == (3 if name == "cut" else 0)
+    assert found["state"].startswith("torn; byte ") if name == "cut" else found["state"] == "complete"
+    images = next(topic for topic in found["topics"] if topic["topic"] == "camera/image")
+    assert images["hz"] == pytest.approx(8.0, rel=0.05)
+    assert images["gaps"] == 0
+
+
+def test_info_names_what_was_lost_and_on_which_topic(tmp_path, capsys):
+    change = without("vision/view", sequences=range(100, 103))
+    with pytest.raises(typer.Exit) as end:
+        info(rewritten(FOLDER / "reverse.mcap", tmp_path / "lossy.mcap", change), as_json=True)
+    found = json.loads(capsys.readouterr().out)
+    assert end.value.exit_code == 3
+    assert found["state"] == "3 lost on vision/view"
+    assert (found["lost"], found["robot_minutes"], found["trials"]) == (3, 0.5, 2)
+    assert next(topic["gaps"] for topic in found["topics"] if topic["topic"] == "vision/view") == 1
