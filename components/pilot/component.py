@@ -83,7 +83,7 @@ class Pilot:
             return ()
         sight = sight_of(self._rules.task, percept.visible, percept.slope, percept.pan_rad, percept.tilt_rad)
         self._progress, wish = step(self._rules, before, Frame(capture_ns, sight, self._heard, self._table))
-        outputs = (Output("drive", _drive(wish)), Output("trial", self._trial(wish)))
+        outputs = (Output("trial", self._trial(wish)), Output("drive", _drive(wish)))  # trial has the longer way
         if self._progress.phase == Phase.FINISHED != before.phase:
             return (*outputs, Output("end", SessionEnd(reason="finished")))
         return outputs

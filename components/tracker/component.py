@@ -86,7 +86,7 @@ class Tracker:
             pan_rate_radps=aim.pan_rate_radps,
             tilt_rate_radps=aim.tilt_rate_radps,
         )
-        return Output("aim", command, capture_ns), Output("percept", percept, capture_ns)
+        return Output("percept", percept, capture_ns), Output("aim", command, capture_ns)  # the way to the wheels first
 
 
 def sight_of(view: View, capture_ns: int) -> Sight:

@@ -247,7 +247,8 @@ def test_a_bumper_from_before_the_placement_does_not_end_the_next_trial():
     assert (hit.outcome, placed.place) == (Trial.COLLIDED, True)
     for k in range(5, 12):
         said = pilot.handle(Event(k * PERIOD_NS, "percept", percept(*FAR), k * PERIOD_NS))
-    assert (said[1].message.mode, said[1].message.ended) == (Trial.APPROACH, 1)
+    (trial,) = [output.message for output in said if output.port == "trial"]
+    assert (trial.mode, trial.ended) == (Trial.APPROACH, 1)
 
 
 def test_an_old_percept_just_after_a_placement_begins_no_trial():

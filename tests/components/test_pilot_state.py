@@ -66,8 +66,7 @@ def test_every_new_frame_is_answered_once_and_nothing_moves_without_a_sight_of_t
             assert said == ()
             continue
         newest = event.capture_ns
-        assert [o.port for o in said[:2]] == ["drive", "trial"]
-        assert {o.port for o in said[2:]} <= {"end"}
+        assert sorted(o.port for o in said if o.port != "end") == ["drive", "trial"]
         command, look = said[0].message, event.message
         moves = (command.v_mps, command.omega_radps) != (0.0, 0.0)
         assert abs(command.v_mps) <= 0.2

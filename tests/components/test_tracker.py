@@ -176,9 +176,9 @@ def test_a_frame_with_unreadable_encoders_is_answered_and_not_visible():
     t = world.now_ns
     world.tracker.handle(Event(t, "view", world.view(), t))
     outputs = world.tracker.handle(Event(t, "head", HeadState(pan_rad=math.nan, tilt_rad=0.2), t))
-    aim, percept = (output.message for output in outputs)
-    assert not percept.visible
-    assert math.isfinite(aim.pan_rad + aim.tilt_rad)
+    said = {output.port: output.message for output in outputs}
+    assert not said["percept"].visible
+    assert math.isfinite(said["aim"].pan_rad + said["aim"].tilt_rad)
 
 
 def test_pd_gains_that_overshoot_are_refused():
