@@ -67,7 +67,8 @@ def test_every_new_frame_is_answered_once_and_nothing_moves_without_a_sight_of_t
             continue
         newest = event.capture_ns
         assert sorted(o.port for o in said if o.port != "end") == ["drive", "trial"]
-        command, look = said[0].message, event.message
+        (command,) = [o.message for o in said if o.port == "drive"]
+        look = event.message
         moves = (command.v_mps, command.omega_radps) != (0.0, 0.0)
         assert abs(command.v_mps) <= 0.2
         assert abs(command.omega_radps) <= QUICK.reverse_turn_rate_radps
