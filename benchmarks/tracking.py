@@ -20,6 +20,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.figure import Figure
 from components.head.component import Head
 from components.simulator.component import Simulator
 from components.tracker.component import Tracker
@@ -152,6 +153,24 @@ def run(seed: int = 1, count: int = 8) -> dict[str, float]:
     cv2.setNumThreads(1)
     found = {setting: measure(seed, count, **tracker) for setting, tracker in SETTINGS.items()}
     return {f"{setting}_{name}": value for setting, numbers in found.items() for name, value in numbers.items()}
+
+
+def figures() -> list[Figure]:
+    """What is asked of the tracker, beside what the paper's PD alone gives."""
+    found = run()
+    return [
+        Figure("PD alone: object from the image centre, p95", found["pd_error_px_p95"], "px", note="the paper's"),
+        Figure("feed-forward: object from the image centre, p95", found["ff_error_px_p95"], "px", at_most=8),
+        Figure("error of the bearing, p95", found["ff_bearing_error_deg_p95"], "deg", at_most=0.5),
+        Figure("error of beta, p95", found["ff_beta_error_deg_p95"], "deg"),
+        Figure(
+            "beta from the slope where it stands, p95",
+            found["image_beta_error_deg_p95"],
+            "deg",
+            note="not referred to the image centre",
+        ),
+        Figure("tracker, per frame", found["ff_tracker_us_p50"], "us"),
+    ]
 
 
 def table(numbers: dict[str, float]) -> str:

@@ -67,14 +67,14 @@ def test_every_new_frame_is_answered_once_and_nothing_moves_without_a_sight_of_t
             continue
         newest = event.capture_ns
         assert sorted(o.port for o in said if o.port != "end") == ["drive", "trial"]
-        (command,) = [o.message for o in said if o.port == "drive"]
-        look = event.message
+        answer = {o.port: o.message for o in said}
+        command, look = answer["drive"], event.message
         moves = (command.v_mps, command.omega_radps) != (0.0, 0.0)
         assert abs(command.v_mps) <= 0.2
         assert abs(command.omega_radps) <= QUICK.reverse_turn_rate_radps
         if not (look.visible and abs(look.slope) < 1e3 and abs(look.pan_rad) < 3.2 and 0.0 < look.tilt_rad < 1.58):
             assert not moves
-        if said[1].message.mode in (Trial.WAIT, Trial.PLACE, Trial.GRASP):
+        if answer["trial"].mode in (Trial.WAIT, Trial.PLACE, Trial.GRASP):
             assert not moves
 
 
