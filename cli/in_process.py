@@ -10,6 +10,7 @@ from typing import Any
 
 from cli.session import Watch
 from runtime.lockstep import Lockstep, Tap
+from runtime.one_thread import keep_start_up_out_of_collections, limit_threads
 from runtime.system import ComponentSpec, System, class_of, params_of
 
 
@@ -26,6 +27,7 @@ def run_in_process(system: System, watch: Watch, started: str, duration_s: float
         ConfigurationError: the recording can not be made.
         ComponentError: a component can not go on.
     """
+    limit_threads()
     taps = [_tap(spec, system, started) for spec in system.components if spec.tap]
     engine = Lockstep(system, taps=taps)
 
@@ -37,6 +39,8 @@ def run_in_process(system: System, watch: Watch, started: str, duration_s: float
     for key in (system.trial, system.truth):
         if key:
             engine.watch(key, follow)
+    limit_threads()  # OpenCV listens only once it is imported
+    keep_start_up_out_of_collections()
     with on_signal(lambda: engine.stop("interrupted")):
         return engine.run(duration_s)
 
