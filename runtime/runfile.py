@@ -112,7 +112,7 @@ def newest_logs(realm: str = "") -> Path:
         ConfigurationError: there is none.
     """
     pattern = f"{_slug(realm)}.*" if realm else "*"
-    found = sorted(_logs(private_directory()).glob(pattern), key=lambda path: path.stat().st_mtime)
+    found = sorted(_logs(private_directory()).glob(pattern), key=_modified_s)
     if not found:
         raise ConfigurationError(f"realm {realm or 'of any name'} must have run on this host; there are no logs")
     return found[-1]
@@ -145,6 +145,14 @@ def _inode(path: Path) -> int:
         return -1
 
 
+def _modified_s(path: Path) -> float:
+    """When a directory was last written; 0 if another supervisor has removed it meanwhile."""
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
+
+
 def _slug(realm: str) -> str:
     return realm.replace("/", "+")
 
@@ -162,8 +170,6 @@ def _logs(home: Path) -> Path:
 def _prune(home: Path) -> None:
     """Remove the oldest log directories, never one of a running system."""
     busy = {run.directory for run in running()}
-    ended = sorted(
-        (path for path in _logs(home).iterdir() if str(path) not in busy), key=lambda path: path.stat().st_mtime
-    )
+    ended = sorted((path for path in _logs(home).iterdir() if str(path) not in busy), key=_modified_s)
     for path in ended[: -_LOGS_KEPT or None]:
         shutil.rmtree(path, ignore_errors=True)

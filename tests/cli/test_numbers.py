@@ -80,7 +80,8 @@ def test_info_of_a_torn_file_is_exit_code_3(berth, twins, tmp_path):
     torn = tmp_path / "torn.mcap"
     torn.write_bytes(twins.first.read_bytes()[:1_000_000])
     code, out = berth("info", torn, "--json")
-    assert (code, json.loads(out)["state"]) == (3, "torn")
+    assert code == 3
+    assert json.loads(out)["state"].startswith("torn; byte ")
     code, out = berth("info", torn)
     assert code == 3
     assert "torn" in out
