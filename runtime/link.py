@@ -18,10 +18,6 @@ _OPEN_MS = 1000
 _BATCHES = 16
 """64 KiB each, of ordinary data: what waits while the air is busy, before it is dropped."""
 
-_BLOCK_US = 200_000
-"""zenoh does not overwrite every message in time (one run in three, measured): who still blocks for longer than this
-meets a dead link, which is closed and dialled again. zenoh's own limit is 5 s."""
-
 
 @dataclass(frozen=True)
 class Link:
@@ -47,7 +43,6 @@ class Link:
         if clock == "real":
             options["transport/link/tx/lease"] = _LEASE_MS
             options["transport/link/tx/queue/size/data"] = _BATCHES
-            options["transport/link/tx/queue/congestion_control/block/wait_before_close"] = _BLOCK_US
             options["qos/network"] = [
                 {
                     "id": "link",

@@ -150,7 +150,7 @@ def test_the_robot_keeps_its_policy_and_its_pace_while_the_link_is_down(story):
     commands = [(m.capture_ns / FRAME_NS, m.decoded()) for m in story.robot.messages({"base/actuate"})]
     during = [(frame, command) for frame, command in commands if story.cut_frame <= frame <= story.mended_frame]
     holes = [after - before for (before, _), (after, _) in pairwise(during)]
-    assert sum(holes) > CUT_FRAMES - HOLE_FRAMES
+    assert sum(holes) > CUT_FRAMES / 2, "a busy machine may see the cut late, but it must see most of it"
     assert max(holes) < HOLE_FRAMES, "a link that blocks its publishers makes a hole of the length of the cut"
     assert sum(command.v_mps != 0.0 for _, command in during) > len(during) / 2
 
