@@ -31,8 +31,8 @@ FRAMES = 120
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """A whole lockstep session of world and echo."""
-    system = recorded_system(tmp_path_factory.mktemp("log"), [f"world.frames={FRAMES}"])
+    """A whole lockstep session of world and echo, whose recorder is never far behind."""
+    system = recorded_system(tmp_path_factory.mktemp("log"), [f"world.frames={FRAMES}", "world.window=16"])
     with Supervisor(system) as supervisor:
         run_to_end(supervisor)
         supervisor.stop()

@@ -13,6 +13,8 @@ class Params:
     frames: int = 50
     """The session ends after so many; 0 = never."""
     payload_bytes: int = 1000
+    window: int = 0
+    """So many frames may be shown that the recorder has not acknowledged; 0 = any number, recorded or not."""
     clock: str = "lockstep"
 
 
@@ -23,6 +25,6 @@ INPUTS = {
     "stall": Stall(),
 }
 OUTPUTS = {
-    "image": Port(CompressedImage, Kind.IMAGE, per_frame=True, delayed=True, on=("drive", "tick", "stall")),
-    "end": Port(SessionEnd, Kind.EVENT, delayed=True, on=("drive",)),
+    "image": Port(CompressedImage, Kind.IMAGE, per_frame=True, delayed=True, on=("drive", "ack", "tick", "stall")),
+    "end": Port(SessionEnd, Kind.EVENT, delayed=True, on=("drive", "ack")),
 }
