@@ -24,6 +24,8 @@ from runtime.system import System
 LIBRARY = "berth"
 SESSION = "berth.session"
 """Name of the metadata record that describes the session."""
+FORMAT = 1
+"""Of a session's file; the metadata says it. Raised when a reader of an earlier release would misread the file."""
 LAUNCH = "launch.json"
 """Name of the attachment that holds the resolved launch file."""
 _COMPRESSION = {"lz4": CompressionType.LZ4, "zstd": CompressionType.ZSTD, "none": CompressionType.NONE}
@@ -68,6 +70,7 @@ class LogWriter:
         self._writer.add_metadata(
             SESSION,
             {
+                "format": str(FORMAT),
                 "realm": system.realm,
                 "clock": system.clock,
                 "seed": str(system.seed),

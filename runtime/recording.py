@@ -11,7 +11,7 @@ from typing import IO, Any, NamedTuple
 from google.protobuf.message import DecodeError
 from mcap.records import Attachment, Channel, Metadata, Schema
 
-from runtime.log import LAUNCH, SESSION
+from runtime.log import FORMAT, LAUNCH, SESSION
 from runtime.mcap_items import MAGIC, Fault, Item, RawMessage, items
 from runtime.messages import message_class
 from runtime.params import ConfigurationError
@@ -61,19 +61,24 @@ class Recording:
     """A session's file.
 
     Raises:
-        ConfigurationError: the file can not be read or is not MCAP.
+        ConfigurationError: the file can not be read, is not MCAP, or was written by a newer release.
     """
 
     file: Path
 
     def __post_init__(self) -> None:
-        """Refuse what is not MCAP at once."""
+        """Refuse at once what can not be read rightly."""
         with self._open() as stream:
             magic = stream.read(len(MAGIC))
         if magic[:5] == MAGIC[:5] and magic[6:] == MAGIC[6:] and magic != MAGIC:
             raise ConfigurationError(f"{self.file}: must be MCAP version 0; got version {magic[5:6]!r}")
         if magic != MAGIC:
             raise ConfigurationError(f"{self.file}: must be an MCAP file")
+        version = self.session().get("format", "1")  # the first sessions did not say it
+        if version not in map(str, range(1, FORMAT + 1)):
+            raise ConfigurationError(
+                f"{self.file}: session format must be one that this release reads, up to {FORMAT}; got {version[:40]!r}"
+            )
 
     def _open(self) -> IO[bytes]:
         try:

@@ -43,6 +43,22 @@ def write(file, system, messages, **options) -> Recording:
     return Recording(file)
 
 
+@pytest.mark.parametrize("version", ["2", "10", "0", "-1", "1.0", "", "\u0661", "x" * 5000])
+def test_another_format_than_this_release_reads_is_refused_by_name(tmp_path, system, monkeypatch, version):
+    monkeypatch.setattr("runtime.log.FORMAT", version)
+    with pytest.raises(ConfigurationError) as refusal:
+        write(tmp_path / "new.mcap", system, rows(3))
+    assert str(refusal.value).startswith(f"{tmp_path}/new.mcap: session format must be one that this release reads, up")
+    assert f"got {version[:40]!r}" in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_session_says_its_format_and_one_that_does_not_is_of_the_first(tmp_path, system, monkeypatch):
+    assert write(tmp_path / "a.mcap", system, rows(3)).session()["format"] == "1"
+    monkeypatch.setattr("runtime.recording.SESSION", "nobody's")
+    assert Recording(tmp_path / "a.mcap").session() == {}
+
+
 @pytest.mark.parametrize("compression", ["lz4", "zstd", "none"])
 def test_what_was_written_is_read_in_its_order(tmp_path, system, compression):
     recording = write(tmp_path / "a.mcap", system, rows(500), compression=compression, chunk_bytes=4096)
