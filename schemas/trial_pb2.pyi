@@ -6,7 +6,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Trial(_message.Message):
-    __slots__ = ("phase", "mode", "number", "outcome", "ended", "controller", "action", "policy_version", "place", "start", "goal_reached", "began_ns")
+    __slots__ = ("phase", "mode", "number", "outcome", "ended", "controller", "action", "policy_version", "place", "start", "goal_reached", "began_ns", "failure", "failure_ns", "side")
     class Phase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         TRAIN: _ClassVar[Trial.Phase]
@@ -49,6 +49,28 @@ class Trial(_message.Message):
     ARRIVED: Trial.Outcome
     PICKED: Trial.Outcome
     MISSED: Trial.Outcome
+    class Failure(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        NO_FAILURE: _ClassVar[Trial.Failure]
+        UNREACHABLE: _ClassVar[Trial.Failure]
+        OBJECT_LOST: _ClassVar[Trial.Failure]
+        MODEL_WRONG: _ClassVar[Trial.Failure]
+        LATE_COMMAND: _ClassVar[Trial.Failure]
+        SLIP: _ClassVar[Trial.Failure]
+        COLLISION: _ClassVar[Trial.Failure]
+        TIMEOUT: _ClassVar[Trial.Failure]
+        OFF_COURSE: _ClassVar[Trial.Failure]
+        PICK_MISSED: _ClassVar[Trial.Failure]
+    NO_FAILURE: Trial.Failure
+    UNREACHABLE: Trial.Failure
+    OBJECT_LOST: Trial.Failure
+    MODEL_WRONG: Trial.Failure
+    LATE_COMMAND: Trial.Failure
+    SLIP: Trial.Failure
+    COLLISION: Trial.Failure
+    TIMEOUT: Trial.Failure
+    OFF_COURSE: Trial.Failure
+    PICK_MISSED: Trial.Failure
     PHASE_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
     NUMBER_FIELD_NUMBER: _ClassVar[int]
@@ -61,6 +83,9 @@ class Trial(_message.Message):
     START_FIELD_NUMBER: _ClassVar[int]
     GOAL_REACHED_FIELD_NUMBER: _ClassVar[int]
     BEGAN_NS_FIELD_NUMBER: _ClassVar[int]
+    FAILURE_FIELD_NUMBER: _ClassVar[int]
+    FAILURE_NS_FIELD_NUMBER: _ClassVar[int]
+    SIDE_FIELD_NUMBER: _ClassVar[int]
     phase: Trial.Phase
     mode: Trial.Mode
     number: int
@@ -73,4 +98,7 @@ class Trial(_message.Message):
     start: int
     goal_reached: bool
     began_ns: int
-    def __init__(self, phase: _Optional[_Union[Trial.Phase, str]] = ..., mode: _Optional[_Union[Trial.Mode, str]] = ..., number: _Optional[int] = ..., outcome: _Optional[_Union[Trial.Outcome, str]] = ..., ended: _Optional[int] = ..., controller: _Optional[str] = ..., action: _Optional[int] = ..., policy_version: _Optional[int] = ..., place: _Optional[bool] = ..., start: _Optional[int] = ..., goal_reached: _Optional[bool] = ..., began_ns: _Optional[int] = ...) -> None: ...
+    failure: Trial.Failure
+    failure_ns: int
+    side: str
+    def __init__(self, phase: _Optional[_Union[Trial.Phase, str]] = ..., mode: _Optional[_Union[Trial.Mode, str]] = ..., number: _Optional[int] = ..., outcome: _Optional[_Union[Trial.Outcome, str]] = ..., ended: _Optional[int] = ..., controller: _Optional[str] = ..., action: _Optional[int] = ..., policy_version: _Optional[int] = ..., place: _Optional[bool] = ..., start: _Optional[int] = ..., goal_reached: _Optional[bool] = ..., began_ns: _Optional[int] = ..., failure: _Optional[_Union[Trial.Failure, str]] = ..., failure_ns: _Optional[int] = ..., side: _Optional[str] = ...) -> None: ...
