@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from experiments.levels import judge
+from docking.levels import judge
 from experiments.problem import Floats, Problem
 from experiments.rollout import step
 from experiments.starts import Starts

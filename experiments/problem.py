@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from docking.angles import DEG
+from docking.levels import Limits
 from docking.score import DOCKED_M, DOCKED_RAD
 from docking.task import Task
 from experiments.starts import D_MIN_M, DISTANCES_M, SAMPLING_S
@@ -38,21 +38,6 @@ def action_set(name: str, speed_mps: float, turn_rate_radps: float) -> Actions:
         raise ConfigurationError(f"actions must be one of {', '.join(ACTION_SETS)}; got {name!r}")
     speeds = {"one-speed": (1.0,), "two-speeds": (1.0, 0.5), "reverse": (1.0, -1.0)}[name]
     return tuple((share * speed_mps, sign * turn_rate_radps) for share in speeds for sign in (1.0, -1.0))
-
-
-class Limits(NamedTuple):
-    """Numbers that say what is goal and what is sink, for compiled code; rad and m."""
-
-    beta_goal_rad: float
-    alpha_goal_rad: float
-    beta_range_rad: float
-    alpha_range_rad: float
-    d_min_m: float
-    d_max_m: float
-    gripper_m: float
-    docking: bool
-    docked_m: float
-    docked_rad: float
 
 
 @dataclass(frozen=True)

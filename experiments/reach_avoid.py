@@ -16,11 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from docking.levels import FAR
+from docking.value_iteration import LATE_S, look_up, promises, sweep
 from experiments.controller import docking_times, points_of
-from experiments.levels import FAR
 from experiments.problem import Floats, Problem
+from experiments.rollout import landings_of, moves_of
 from experiments.starts import Starts
-from experiments.value_iteration import LATE_S, fastest_actions, look_up, moves_of, sweep
 
 _SWEEPS = 400
 _SETTLED = 0.01
@@ -40,15 +41,8 @@ class Ceiling:
     def act(self, beta_rad: Floats, alpha_rad: Floats, d_m: Floats) -> tuple[Floats, Floats]:
         """Speed (m/s) and turn rate (rad/s) of the fastest policy at each state, `[N]`."""
         problem, actions = self.problem, np.array(self.problem.actions)
-        chosen = fastest_actions(
-            self.times_s,
-            problem.nodes,
-            problem.limits,
-            problem.printed,
-            actions,
-            problem.sampling_s,
-            points_of(beta_rad, alpha_rad, d_m),
-        )
+        landings = landings_of(problem.printed, points_of(beta_rad, alpha_rad, d_m), actions, problem.sampling_s)
+        chosen = promises(self.times_s, problem.nodes, problem.limits, landings, problem.sampling_s).argmin(axis=1)
         return actions[chosen, 0], actions[chosen, 1]
 
     def time_s(self, beta_rad: ArrayLike, alpha_rad: ArrayLike, d_m: ArrayLike) -> Floats:

@@ -176,3 +176,26 @@ def drive_trial(
 def changed(a: int, b: int, columns: int) -> int:
     """Chebyshev distance between two cells."""
     return max(abs(a // columns - b // columns), abs(a % columns - b % columns))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def moves_of(printed: bool, alpha: Floats, d: Floats, actions: Floats, dt: float) -> Floats:
+    """(change of beta, alpha, d) after each action held for dt: [d nodes, alpha nodes, actions, 3]."""
+    moves = np.empty((len(d), len(alpha), len(actions), 3))
+    for i in range(len(d)):
+        for j in range(len(alpha)):
+            for action in range(len(actions)):
+                v, omega = actions[action]
+                moves[i, j, action] = step(printed, 0.0, alpha[j], d[i], v, omega, dt)
+    return moves
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def landings_of(printed: bool, points: Floats, actions: Floats, dt: float) -> Floats:
+    """Where each action leads in dt from each of points [N, 3]: [N, actions, 3]."""
+    landings = np.empty((len(points), len(actions), 3))
+    for n in range(len(points)):
+        for action in range(len(actions)):
+            v, omega = actions[action]
+            landings[n, action] = step(printed, points[n, 0], points[n, 1], points[n, 2], v, omega, dt)
+    return landings

@@ -15,13 +15,13 @@ from matplotlib.patches import Rectangle
 
 from docking.angles import DEG
 from docking.cells import Grid
+from docking.levels import judge
 from docking.linear import Linear, teacher_table
 from docking.policy import UNKNOWN
 from experiments.campaign import Job, Options
 from experiments.controller import Controller, docking_times, trace
 from experiments.laws import linear, tabled
 from experiments.learners import BEST, LEARNERS, TEACHER
-from experiments.levels import judge
 from experiments.picture import picture
 from experiments.problem import Floats, Problem
 from experiments.reach_avoid import solve

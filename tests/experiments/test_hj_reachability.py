@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from docking.angles import DEG
+from docking.levels import goal_level, sink_level
 from docking.task import Task
-from experiments.levels import goal_level, sink_level
 from experiments.problem import Problem
 from experiments.reach_avoid import solve
 

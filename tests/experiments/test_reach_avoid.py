@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from docking import plant
 from docking.angles import DEG
 from docking.cells import Grid
+from docking.levels import FAR, goal_level, judge, sink_level
 from docking.task import Task
+from docking.value_iteration import LATE_S, interpolated
 from experiments.controller import docking_times, points_of, trace
-from experiments.levels import FAR, goal_level, judge, sink_level
 from experiments.problem import Problem, action_set
 from experiments.reach_avoid import Ceiling, solve
 from experiments.rollout import step
 from experiments.starts import Starts, demo_starts, protocol_starts
-from experiments.value_iteration import LATE_S, interpolated
 from runtime.params import ConfigurationError
 
 COARSE = {"angle_step_rad": 1.0 * DEG, "distance_step_m": 0.0125}

@@ -7,16 +7,30 @@ about one goal away in every direction. Points are (beta rad, alpha rad, d m).
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from experiments.problem import Limits
-
 _LENGTH_M = 0.02
 FAR = 1.0
 """Levels are cut off here."""
+
+
+class Limits(NamedTuple):
+    """Numbers that say what is goal and what is sink, for compiled code; rad and m."""
+
+    beta_goal_rad: float
+    alpha_goal_rad: float
+    beta_range_rad: float
+    alpha_range_rad: float
+    d_min_m: float
+    d_max_m: float
+    gripper_m: float
+    docking: bool
+    docked_m: float
+    docked_rad: float
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -14,28 +14,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from experiments.levels import FAR, cell_level, dock_level, goal_level, sink_level
-from experiments.problem import Limits
-from experiments.rollout import step
+from docking.levels import FAR, Limits, cell_level, dock_level, goal_level, sink_level
 
 Floats = NDArray[np.float64]
 Axes = tuple[Floats, Floats, Floats]
-"""Nodes in beta, alpha (rad) and d (m)."""
+"""Nodes in beta, alpha (rad) and d (m, or any other unit that the limits have too)."""
 
 LATE_S = 60.0
 """Time of a node from which the goal is not reached."""
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def moves_of(printed: bool, alpha: Floats, d: Floats, actions: Floats, dt: float) -> Floats:
-    """(change of beta, alpha, d) after each action held for dt: [d nodes, alpha nodes, actions, 3]."""
-    moves = np.empty((len(d), len(alpha), len(actions), 3))
-    for i in range(len(d)):
-        for j in range(len(alpha)):
-            for action in range(len(actions)):
-                v, omega = actions[action]
-                moves[i, j, action] = step(printed, 0.0, alpha[j], d[i], v, omega, dt)
-    return moves
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -157,18 +143,12 @@ def look_up(value: Floats, axes: Axes, points: Floats) -> Floats:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def fastest_actions(
-    times: Floats, axes: Axes, limits: Limits, printed: bool, actions: Floats, dt: float, points: Floats
-) -> NDArray[np.int64]:
-    """Index of the action that promises the least time from each of points [N, 3], looking one dt ahead: [N]."""
-    chosen = np.zeros(len(points), np.int64)
-    for n in range(len(points)):
-        least = np.inf
-        for action in range(len(actions)):
-            v, omega = actions[action]
-            b, a, d = step(printed, points[n, 0], points[n, 1], points[n, 2], v, omega, dt)
+def promises(times: Floats, axes: Axes, limits: Limits, landings: Floats, dt: float) -> Floats:
+    """Time that each action promises whose dt ends at landings [N, actions, 3]: [N, actions] s."""
+    found = np.empty(landings.shape[:2])
+    for n in range(landings.shape[0]):
+        for action in range(landings.shape[1]):
+            b, a, d = landings[n, action]
             onward = interpolated(times, axes, b, a, d)
-            time = promised(True, dt, goal_level(limits, b, a, d), sink_level(limits, b, a, d), onward)
-            if time < least:
-                least, chosen[n] = time, action
-    return chosen
+            found[n, action] = promised(True, dt, goal_level(limits, b, a, d), sink_level(limits, b, a, d), onward)
+    return found
