@@ -16,7 +16,7 @@ from cli.picking import EXCLUDE, INCLUDE, TOPICS, selection
 from components.recorder.component import Recorder
 from components.recorder.ports import Params
 from runtime.assignment import Assignment
-from runtime.clock import SECOND_NS, FrameClock, PacedClock
+from runtime.clock import SECOND_NS, FrameClock, LogTimes, PacedClock
 from runtime.contract import ComponentError, Output
 from runtime.inbox import Arrival
 from runtime.joining import description
@@ -79,6 +79,7 @@ class Transcript:
         self._clock = PacedClock(session.origin_ns, session.system.pace or 1.0)
         self._lockstep = session.system.clock == "lockstep"
         self._frames = FrameClock()
+        self._log_times = LogTimes()
         self._run = new_run()
         self._gaps = 0
         self._began_ns = time.monotonic_ns()
@@ -103,7 +104,8 @@ class Transcript:
     def _write(
         self, key: str, schema: str, payload: bytes, run: int, sequence: int, capture_ns: int
     ) -> tuple[Output, ...]:
-        return self._recorder.message(key, schema, payload, run, sequence, capture_ns, self._frames.now_ns)
+        log_ns = self._log_times.log_ns(key, run, capture_ns) if self._lockstep else self._frames.now_ns
+        return self._recorder.message(key, schema, payload, run, sequence, capture_ns, log_ns)
 
     def tick(self) -> None:
         """Let the recorder flush when it is time to."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 SECOND_NS = 1_000_000_000
+LOG_SKEW_NS = 4 * SECOND_NS
+"""In lockstep a recorder hears one component at most 16 frames (two seconds at 8 Hz) earlier than another."""
 
 
 class TickSchedule:
@@ -62,6 +64,32 @@ class FrameClock:
         """Session time at the hand-over of a message of this capture time."""
         self.now_ns = max(self.now_ns, capture_ns)
         return self.now_ns
+
+
+class LogTimes:
+    """Session time under which a tap logs each message in lockstep: its capture time, however late the tap is.
+
+    The tap's own clock would be the newest frame that it has heard of, and under load it hears one component two
+    seconds before another. Three exceptions: in one channel time never runs backwards, so that sorting by log time
+    keeps every sequence; who lags behind by more than the skew is logged there, so that sorting needs a bounded memory;
+    and a new run that far back begins a new epoch, which comes after all that was before.
+    """
+
+    def __init__(self) -> None:
+        """Nothing was logged."""
+        self._newest_ns = 0
+        self._floor_ns = 0
+        self._channels: dict[tuple[str, int], int] = {}
+
+    def log_ns(self, key: str, run: int, capture_ns: int) -> int:
+        """Log time of the next message of a key and run."""
+        self._newest_ns = max(self._newest_ns, capture_ns)
+        oldest_ns = self._newest_ns - LOG_SKEW_NS
+        if (key, run) not in self._channels and capture_ns < oldest_ns:
+            self._floor_ns = self._newest_ns
+        log_ns = max(capture_ns, self._channels.get((key, run), 0), oldest_ns, self._floor_ns)
+        self._channels[key, run] = log_ns
+        return log_ns
 
 
 class Pacer:

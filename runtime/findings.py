@@ -39,6 +39,7 @@ class _Stream:
         self.holes: set[int] = set()
         self.lost = 0
         self.repeated = 0
+        self.log_ns = 0
 
     def add(self, sequence: int) -> None:
         if sequence < self.next:
@@ -71,7 +72,6 @@ class Examination:
         self._tracks: dict[tuple[str, int], _Track] = {}
         self._awaited: dict[tuple[str, int, int], str] = {}
         self._inputs: dict[str, Mapping[str, str]] = {}
-        self._time_ns = 0
         self.messages = 0
 
     def run(self) -> list[Finding]:
@@ -135,13 +135,13 @@ class Examination:
             self._note("file", f"messages of channel {message.channel}, which is not described")
             return
         topic, run, schema = known
-        if message.log_ns < self._time_ns:
-            self._note("order", f"{topic}: received before the message in front of it")
-        self._time_ns = max(self._time_ns, message.log_ns)
         stream = self._streams.get((topic, run))
         if stream is None:
             stream = self._streams[topic, run] = _Stream(message.sequence)
         stream.add(message.sequence)
+        if message.log_ns < stream.log_ns:
+            self._note("order", f"{topic}: its log time is before that of the message in front of it")
+        stream.log_ns = max(stream.log_ns, message.log_ns)
         self._awaited.pop((topic, run, message.sequence), None)
         decoded = self._decoded(topic, schema, message.payload)
         if self._names.get(schema) == _JOURNAL and decoded is not None:

@@ -1,7 +1,9 @@
 """A session is one MCAP file that explains itself: this writes it, `runtime.recording` reads it.
 
 Topic = key below the realm. One channel per topic and run id, whose MCAP `sequence` is the publisher's and whose
-`publish_time` is the capture time; `log_time` is session time at reception.
+`publish_time` is the capture time. `log_time` is session time at reception; in lockstep on the bus, where a recorder
+may be two seconds late, it is the capture time (`runtime.clock.LogTimes`), so a file is not quite sorted by it. Nobody
+has to keep the order of the file: the journal alone says in which order a component was handed its messages.
 """
 
 from __future__ import annotations
@@ -93,7 +95,7 @@ class LogWriter:
             run: run id of the publisher.
             sequence: of the publisher on this key.
             capture_ns: capture time.
-            time_ns: session time at reception.
+            time_ns: session time, see above; within a channel never decreasing.
         """
         if self._stream.closed:
             return
@@ -102,7 +104,7 @@ class LogWriter:
             self._writer.add_message(channel, max(time_ns, 0), payload, max(capture_ns, 0), sequence & 0xFFFFFFFF)
         except OSError as error:
             raise self._failed(error) from None
-        self._newest_ns = time_ns
+        self._newest_ns = max(self._newest_ns, time_ns)
 
     def _register(self, topic: str, schema: str, run: int) -> int:
         if schema not in self._schemas:

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from runtime.clock import LOG_SKEW_NS
 from runtime.params import ConfigurationError
 from runtime.recording import Logged, Recording
 from runtime.selection import Selection
 
 _SHELL = ("status", "journal")
-_SKEW_NS = 4_000_000_000
-"""A recorder hears one component earlier than another; lockstep waits for it after 16 frames, two seconds."""
+_HELD = 16384
+"""Messages held in memory to be sorted: four seconds of 4000 a second."""
 
 
 class Playlist:
-    """The messages of one log, in the order in which they were recorded."""
+    """The messages of one log in the order of their log time; those of one time as they were recorded."""
 
     def __init__(
         self,
@@ -41,7 +42,7 @@ class Playlist:
             duration_s: from there; None = to the end.
             owners: only what these components said on their output ports; empty = everybody, all.
             known: only keys that somebody listens to; None = all.
-            by_frame: in the order of capture times, not of reception, for those who answer frame by frame.
+            by_frame: in the order of capture times instead, for those who answer frame by frame.
 
         Raises:
             ConfigurationError: no session of ours, nothing left, two topics on one key.
@@ -61,7 +62,7 @@ class Playlist:
         self._keys = {topic: key for topic, key in keys.items() if known is None or key in known}
         self.topics: dict[str, str] = {key: schemas[topic] for topic, key in self._keys.items()}
         """Key -> full name of its schema."""
-        first = next((logged.time_ns for logged in recording.messages()), 0)
+        first = next((logged.time_ns for logged in in_order(recording.messages(), LOG_SKEW_NS, _log_ns)), 0)
         self.start_ns = first + round(start_s * 1e9)
         self._end_ns = None if duration_s is None else self.start_ns + round(duration_s * 1e9)
 
@@ -100,30 +101,41 @@ class Playlist:
 
     def messages(self, since_ns: int) -> Iterator[Logged]:
         """The chosen messages from a time on, under their new keys."""
-        chosen = self._chosen(since_ns)
-        return in_frame_order(chosen, _SKEW_NS) if self._by_frame else chosen
+        ordered = in_order(self._recording.messages(list(self._keys)), LOG_SKEW_NS, _log_ns)
+        chosen = self._chosen(ordered, since_ns)
+        return in_order(chosen, LOG_SKEW_NS, _capture_ns) if self._by_frame else chosen
 
-    def _chosen(self, since_ns: int) -> Iterator[Logged]:
-        for logged in self._recording.messages(list(self._keys)):
+    def _chosen(self, ordered: Iterable[Logged], since_ns: int) -> Iterator[Logged]:
+        for logged in ordered:
             if self._end_ns is not None and logged.time_ns > self._end_ns:
                 return
             if logged.time_ns >= since_ns:
                 yield logged._replace(topic=self._keys[logged.topic])
 
 
-def in_frame_order(messages: Iterable[Logged], skew_ns: int) -> Iterator[Logged]:
-    """Messages sorted by capture time, those of one frame as they came.
+def _log_ns(logged: Logged) -> int:
+    return logged.time_ns
+
+
+def _capture_ns(logged: Logged) -> int:
+    return logged.capture_ns
+
+
+def in_order(messages: Iterable[Logged], skew_ns: int, time_of: Callable[[Logged], int]) -> Iterator[Logged]:
+    """Messages sorted by a time of theirs, those of one time as they came.
 
     Args:
-        messages: nearly sorted: none comes later than this after the newest one.
-        skew_ns: how much later; so much is held in memory.
+        messages: nearly sorted: none comes later than the skew after the newest one.
+        skew_ns: how much later; so much is held in memory, and never more than a bounded number.
+        time_of: the time of a message.
     """
     waiting: list[tuple[int, int, Logged]] = []
     newest_ns = 0
     for number, logged in enumerate(messages):
-        heapq.heappush(waiting, (logged.capture_ns, number, logged))
-        newest_ns = max(newest_ns, logged.capture_ns)
-        while waiting[0][0] < newest_ns - skew_ns:
+        time_ns = time_of(logged)
+        heapq.heappush(waiting, (time_ns, number, logged))
+        newest_ns = max(newest_ns, time_ns)
+        while waiting[0][0] < newest_ns - skew_ns or len(waiting) > _HELD:
             yield heapq.heappop(waiting)[2]
     while waiting:
         yield heapq.heappop(waiting)[2]

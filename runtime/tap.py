@@ -6,7 +6,7 @@ import time
 from collections.abc import Collection, Iterable
 from typing import Any
 
-from runtime.clock import SECOND_NS, FrameClock, PacedClock
+from runtime.clock import SECOND_NS, FrameClock, LogTimes, PacedClock
 from runtime.contract import Output
 from runtime.door import FAILURE
 from runtime.inbox import Arrival
@@ -45,6 +45,7 @@ class Tap:
         system = station.system
         self._lockstep = system.clock == "lockstep"
         self._frames = FrameClock()
+        self._log_times = LogTimes()
         self._clock = PacedClock(station.assignment.origin_ns, system.pace or 1.0)
         box = station.inbox.box("bus", _QUEUE)
         for key, schema, publisher in known_keys(system):
@@ -112,8 +113,11 @@ class Tap:
 
     def _message(self, key: str, schema: str, payload: bytes, run: int, sequence: int, capture_ns: int) -> None:
         self._handled += 1
-        outputs = self._tap.message(key, schema, payload, run, sequence, capture_ns, self._frames.now_ns)
-        self._publish(outputs, capture_ns)
+        log_ns = self._log_ns(key, run, capture_ns)
+        self._publish(self._tap.message(key, schema, payload, run, sequence, capture_ns, log_ns), capture_ns)
+
+    def _log_ns(self, key: str, run: int, capture_ns: int) -> int:
+        return self._log_times.log_ns(key, run, capture_ns) if self._lockstep else self._frames.now_ns
 
     def _publish(self, outputs: Iterable[Output], capture_ns: int) -> None:
         for output in outputs:
@@ -127,7 +131,8 @@ class Tap:
         """Publish, and hand it over as well: what a tap says does not come back to it from the bus."""
         sequence, schema = outlet.sequence, message.DESCRIPTOR.full_name
         payload = outlet.put(message, capture_ns)
-        self._tap.message(outlet.key, schema, payload, self._station.run, sequence, capture_ns, self._frames.now_ns)
+        log_ns = self._log_ns(outlet.key, self._station.run, capture_ns)
+        self._tap.message(outlet.key, schema, payload, self._station.run, sequence, capture_ns, log_ns)
 
 
 def known_keys(system: System) -> list[tuple[str, type[Any], str]]:

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.clock import FrameClock, PacedClock, Pacer, TickSchedule
+from runtime.clock import LOG_SKEW_NS, FrameClock, LogTimes, PacedClock, Pacer, TickSchedule
 
 S = 1_000_000_000
 
@@ -62,3 +62,36 @@ def test_a_late_frame_does_not_hurry_those_after_it():
     pacer.wait_ns(0, 0)
     assert pacer.wait_ns(1 * S, 5 * S) == 0
     assert pacer.wait_ns(2 * S, 5 * S) == 1 * S
+
+
+@given(st.lists(st.tuples(st.sampled_from("abc"), st.integers(0, 16)), min_size=1))
+def test_in_lockstep_a_message_is_logged_at_its_capture_time_though_others_were_heard_two_seconds_ahead(heard):
+    """Each component says its next frame; nobody is heard more than 16 frames before another."""
+    times, said = LogTimes(), dict.fromkeys("abc", 0)
+    for name, frames in heard:
+        for _ in range(frames):
+            if said[name] < min(said.values()) + 16:
+                capture_ns = said[name] * S // 8
+                assert times.log_ns(name, 1, capture_ns) == capture_ns
+                said[name] += 1
+
+
+@given(st.lists(st.tuples(st.sampled_from("abc"), st.integers(1, 3), st.integers(0, 20 * S)), min_size=1))
+def test_log_time_keeps_the_order_of_each_channel_and_lags_by_no_more_than_the_skew(heard):
+    times, logged, newest = LogTimes(), {}, 0
+    for name, run, capture_ns in heard:
+        log_ns = times.log_ns(name, run, capture_ns)
+        newest = max(newest, log_ns)
+        assert log_ns >= capture_ns
+        assert log_ns >= logged.get((name, run), 0)
+        assert log_ns >= newest - LOG_SKEW_NS
+        logged[name, run] = log_ns
+
+
+def test_a_new_epoch_is_logged_after_everything_before_it():
+    times = LogTimes()
+    first = [times.log_ns("a", 1, k * S) for k in range(60)]
+    second = [times.log_ns(name, 2, k * S) for k in range(60) for name in "ab"]
+    assert first == [k * S for k in range(60)]
+    assert set(second) == {59 * S}
+    assert times.log_ns("a", 2, 60 * S) == 60 * S

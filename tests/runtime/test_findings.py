@@ -51,7 +51,7 @@ def test_messages_out_of_order_are_found(session, tmp_path):
         return message._replace(log_ns=0, sequence=3) if late else message
 
     found = changed(session, tmp_path, back)
-    assert found["order"] == "world/image: received before the message in front of it"
+    assert found["order"] == "world/image: its log time is before that of the message in front of it"
     assert "lost" in found["sequence"] or "out of order" in found["sequence"]
 
 

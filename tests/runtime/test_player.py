@@ -17,7 +17,7 @@ from runtime.launch import load
 from runtime.params import ConfigurationError
 from runtime.player import Player
 from runtime.playhead import Playhead
-from runtime.playlist import Playlist, in_frame_order
+from runtime.playlist import Playlist, in_order
 from runtime.recording import Logged, Recording
 from runtime.runfile import find
 from runtime.selection import Selection
@@ -38,6 +38,11 @@ def log(tmp_path_factory):
         supervisor.stop()
     assert supervisor.exit_code == 0
     return system
+
+
+def in_log_order(file):
+    """What is to be heard of a log."""
+    return sorted(messages(file), key=lambda row: row.time_ns)
 
 
 def playlist(log, selection=None, remap=None, **options) -> Playlist:
@@ -74,7 +79,7 @@ def contents(rows):
 def test_as_fast_as_possible_is_held_back_by_the_slowest_and_loses_nothing(log, monkeypatch):
     monkeypatch.setattr(listener, "_QUEUE", 8)
     rows, _ = play(log, playlist(log), Playhead(0.0))
-    assert contents(rows) == contents(messages(log.recording))
+    assert contents(rows) == contents(in_log_order(log.recording))
 
 
 def test_a_played_run_is_a_new_one_whose_sequences_begin_at_zero(log):
@@ -106,7 +111,8 @@ def test_a_loop_begins_a_new_epoch_in_which_time_starts_anew(log):
 
 
 def test_the_rate_stretches_time(log):
-    span_s = (messages(log.recording)[-1].time_ns - messages(log.recording)[0].time_ns) / 1e9
+    logged = in_log_order(log.recording)
+    span_s = (logged[-1].time_ns - logged[0].time_ns) / 1e9
     _, wall_s = play(log, playlist(log), Playhead(40.0))
     assert wall_s >= 0.99 * span_s / 40
 
@@ -131,7 +137,7 @@ def test_paused_plays_nothing_until_it_is_told_to(log):
         threading.Thread(target=quit_after_three, daemon=True).start()
 
     rows, _ = play(log, playlist(log), Playhead(1.0, paused=True), until=step_then_quit)
-    assert contents(rows) == contents(messages(log.recording))[:3]
+    assert contents(rows) == contents(in_log_order(log.recording))[:3]
 
 
 def test_a_seek_begins_a_new_epoch_there(log):
@@ -148,8 +154,8 @@ def test_a_seek_begins_a_new_epoch_there(log):
 
 def test_a_stretch_of_the_log_is_chosen_by_its_own_time(log):
     chosen = playlist(log, start_s=2.0, duration_s=3.0)
-    first_ns = messages(log.recording)[0].time_ns
-    wanted = [row for row in messages(log.recording) if 2e9 <= row.time_ns - first_ns <= 5e9]
+    first_ns = in_log_order(log.recording)[0].time_ns
+    wanted = [row for row in in_log_order(log.recording) if 2e9 <= row.time_ns - first_ns <= 5e9]
     assert list(chosen.messages(chosen.start_ns)) == wanted
 
 
@@ -191,7 +197,15 @@ def test_a_strangers_log_is_refused(tmp_path):
 def test_frames_are_put_in_order_if_none_comes_later_than_the_skew(frames):
     captures = [frame + number for number, frame in enumerate(frames)]  # at most 9 behind the newest
     rows = [Logged("a/b", "", b"", 1, number, capture, 0) for number, capture in enumerate(captures)]
-    assert list(in_frame_order(rows, 9)) == sorted(rows, key=lambda row: row.capture_ns)
+    assert list(in_order(rows, 9, lambda row: row.capture_ns)) == sorted(rows, key=lambda row: row.capture_ns)
+
+
+def test_a_file_in_which_time_stands_still_is_not_held_in_memory():
+    rows = (Logged("a/b", "", b"", 1, number, 0, 0) for number in range(50_000))
+    ordered = in_order(rows, 9, lambda row: row.time_ns)
+    next(ordered)
+    assert next(rows).sequence < 20_000
+    assert [row.sequence for row in ordered][:3] == [1, 2, 3]
 
 
 def stand_in(log, run, name):

@@ -5,6 +5,8 @@ import secrets
 import signal
 
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from runtime.launch import load
 from runtime.recording import Recording
@@ -12,7 +14,7 @@ from runtime.replay import replay
 from runtime.supervise import Supervisor
 from tests.recorded_session import LAUNCH
 from tests.runtime.offline import rewritten, without
-from tests.runtime.system import run_until
+from tests.runtime.system import run_to_end, run_until
 
 FOLDS = [spec.name for spec in load(LAUNCH).components if not spec.tap]
 
@@ -38,20 +40,19 @@ def test_a_component_is_told_nothing_of_what_it_said(twins, tmp_path, name):
     assert set(said) == recorded
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory):
-    """Real processes at real time beside busy ones; one of them is killed and started again."""
-    directory = tmp_path_factory.mktemp("live")
-    launch, file = directory / "live.toml", directory / "live.mcap"
+def processes(directory, clock: str, frames: int):
+    """A world and a component that sums, each a process, recorded."""
+    launch = directory / "live.toml"
     launch.write_text(
         f"""
 realm = "test/{secrets.token_hex(6)}"
 [session]
-clock = "real"
+clock = "{clock}"
+end = "world/end"
 [component.world]
 run = "tests.runtime.parts.world"
-inputs = {{ drive = "fickle/drive" }}
-params = {{ frames = 0 }}
+inputs = {{ drive = "fickle/drive", ack = "recorder/ack" }}
+params = {{ frames = {frames}, window = 16 }}
 [component.fickle]
 run = "tests.runtime.parts.fickle"
 restart = "on-failure"
@@ -61,12 +62,19 @@ run = "components.recorder"
 """,
         encoding="utf-8",
     )
-    with Supervisor(load(launch, recording=file)) as supervisor:
+    return load(launch, recording=directory / "live.mcap")
+
+
+@pytest.fixture(scope="module")
+def live(tmp_path_factory):
+    """Real processes at real time beside busy ones; one of them is killed and started again."""
+    system = processes(tmp_path_factory.mktemp("live"), "real", 0)
+    with Supervisor(system) as supervisor:
         run_until(supervisor, lambda: _published(supervisor, "fickle") >= 8)
         os.kill(supervisor.pids["fickle"], signal.SIGKILL)
         run_until(supervisor, lambda: bool(supervisor.deaths) and not supervisor.missing)
         run_until(supervisor, lambda: 8 <= _published(supervisor, "fickle") < _published(supervisor, "world") - 8)
-    return file
+    return system.recording
 
 
 def _published(supervisor, name) -> int:
@@ -88,3 +96,39 @@ def test_a_killed_component_is_replayed_up_to_its_end_and_again_from_its_start(l
     assert report.runs[1].words == ""
     assert all(comparison.identical > 0 for comparison in report.comparisons)
     assert "started again" in report.notes[0]
+
+
+def sorted_by_log_time(source, target):
+    """As any tool rewrites a file that sorts it."""
+    with source.open("rb") as stream, target.open("wb") as out:
+        reader, writer = make_reader(stream), Writer(out)
+        writer.start()
+        for metadata in reader.iter_metadata():
+            writer.add_metadata(metadata.name, metadata.metadata)
+        for attachment in reader.iter_attachments():
+            writer.add_attachment(0, 0, attachment.name, attachment.media_type, attachment.data)
+        channels = {}
+        for schema, channel, message in reader.iter_messages():
+            if channel.id not in channels:
+                known = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, "protobuf", known, channel.metadata)
+            writer.add_message(
+                channels[channel.id], message.log_time, message.data, message.publish_time, message.sequence
+            )
+        writer.finish()
+    return target
+
+
+def test_a_lockstep_session_that_a_tool_has_sorted_by_log_time_is_replayed_all_the_same(tmp_path):
+    system = processes(tmp_path, "lockstep", 300)
+    with Supervisor(system) as supervisor:
+        run_to_end(supervisor)
+    again = Recording(sorted_by_log_time(system.recording, tmp_path / "sorted.mcap"))
+    times = [logged.time_ns for logged in again.messages()]
+    assert times == sorted(times) != []
+    shown = list(again.messages(["world/image"]))
+    assert [logged.time_ns for logged in shown] == [logged.capture_ns for logged in shown]
+    for name in ("world", "fickle"):
+        report = replay(again, name)
+        assert (report.differs, report.is_lossy, report.notes) == (False, False, [])
+        assert report.count("identical") >= 300
