@@ -18,14 +18,21 @@ _TRAINERS = {"rl": ("random", "random"), "lc": ("lc", "lc"), "rl-lc": ("lc", "ra
 
 def controller_of(rules: Rules, progress: Progress) -> str:
     """Who drives this trial: lc, random or greedy."""
+    if rules.is_rivals(progress):
+        return rules.params.rival_controller
     if progress.phase == Phase.EVALUATE:
         return rules.params.evaluation_controller
     return _TRAINERS[rules.params.controller][progress.number % 2]
 
 
+def table_of(rules: Rules, table: PolicyTable | None, progress: Progress) -> PolicyTable | None:
+    """The policy of this trial: the given one, or in a comparison's other trials the rival's."""
+    return rules.rival if rules.is_rivals(progress) else table
+
+
 def steer(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Sight) -> Step:
     """Drive as the trial's controller says: the held action, or a new one in a new cell."""
-    controller = controller_of(rules, progress)
+    controller, table = controller_of(rules, progress), table_of(rules, table, progress)
     if controller == "lc" and progress.phase == Phase.EVALUATE:
         omega = rules.teacher.omega_radps(sight.beta_rad, sight.alpha_rad)
         progress = replace(progress, held=Held(controller="lc"))

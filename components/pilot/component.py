@@ -6,10 +6,12 @@ import base64
 import json
 import math
 from dataclasses import replace
+from typing import Any
 
 from components.pilot import ports
+from components.pilot.choice import table_of as table_of_trial
 from components.pilot.messages import table_of
-from components.pilot.progress import Heard, Mode, Outcome, Phase, Progress, Wish
+from components.pilot.progress import Failure, Heard, Mode, Outcome, Phase, Progress, Wish
 from components.pilot.rules import Rules
 from components.pilot.saved import Saved, from_text, to_text
 from components.pilot.session import step
@@ -17,12 +19,16 @@ from components.pilot.sight import sight_of
 from components.pilot.trial import Frame
 from docking.policy import PolicyTable
 from runtime.contract import Event, Output
-from schemas.drive_pb2 import BaseState, Drive
+from schemas.drive_pb2 import Applied, BaseState, Drive
 from schemas.grasp_pb2 import Grasp
 from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
 from schemas.session_pb2 import SessionEnd
 from schemas.trial_pb2 import Trial
+
+_NUMBERS = ("v_mps", "omega_radps", "odometry_x_m", "odometry_y_m", "odometry_heading_rad")
+_STALE = "stale"
+"""Base's word for a command that was too old to move the robot."""
 
 
 class Pilot:
@@ -51,6 +57,8 @@ class Pilot:
             self._hear_base(event.message, event.capture_ns)
         elif event.port == "grasp":
             self._hear_grasp(event.message, event.capture_ns)
+        elif event.port == "applied":
+            self._hear_applied(event.message, event.capture_ns)
         elif event.port == "policy":
             self._hear_policy(event.message)
         return ()
@@ -89,7 +97,8 @@ class Pilot:
         return outputs
 
     def _trial(self, wish: Wish) -> Trial:
-        now = self._progress
+        now, rules = self._progress, self._rules
+        table = table_of_trial(rules, self._table, now)
         return Trial(
             phase=Phase(now.phase).name,
             mode=Mode(now.mode).name,
@@ -98,18 +107,25 @@ class Pilot:
             ended=now.ended,
             controller=wish.controller,
             action=wish.action,
-            policy_version=0 if self._table is None else self._table.version,
+            policy_version=0 if table is None else table.version,
             place=wish.place,
-            start=self._rules.params.first_start + now.number if wish.place else 0,
+            start=rules.start_of(now.number) if wish.place else 0,
             goal_reached=now.goal_reached,
             began_ns=now.began_ns,
+            failure=Failure(now.failure).name,
+            failure_ns=max(now.failure_ns, 0),
+            side=_side(rules, now),
         )
 
     def _hear_base(self, state: BaseState, capture_ns: int) -> None:
         heard = self._heard
         if capture_ns >= heard.base_ns:
-            motion = (_finite(state.v_mps), _finite(state.omega_radps))
-            self._heard = Heard(capture_ns, state.bumper, *motion, heard.grasp_ns, heard.grasp_done, heard.picked)
+            numbers: dict[str, Any] = {name: _finite(getattr(state, name)) for name in _NUMBERS}
+            self._heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, **numbers)
+
+    def _hear_applied(self, applied: Applied, capture_ns: int) -> None:
+        if applied.commander == _STALE and capture_ns > self._heard.late_ns:
+            self._heard = replace(self._heard, late_ns=capture_ns)
 
     def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
         heard = self._heard
@@ -119,12 +135,19 @@ class Pilot:
 
     def _hear_policy(self, policy: Policy) -> None:
         """Take the newest policy; one that is known when the evaluation begins is frozen."""
-        if self._progress.phase != Phase.TRAIN and self._table is not None:
+        frozen = self._progress.phase != Phase.TRAIN and not self._rules.params.shadow
+        if frozen and self._table is not None:
             return
         try:
             self._table = table_of(policy)
         except ValueError:
             self.refused += 1
+
+
+def _side(rules: Rules, progress: Progress) -> str:
+    if not rules.compares or progress.phase != Phase.EVALUATE:
+        return ""
+    return "b" if rules.is_rivals(progress) else "a"
 
 
 def _drive(wish: Wish) -> Drive:

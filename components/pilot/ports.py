@@ -9,7 +9,7 @@ from docking.angles import DEG
 from docking.task import Task
 from runtime.contract import Input, Kind, Port
 from runtime.params import between, not_negative, one_of, positive, ruled
-from schemas.drive_pb2 import BaseState, Drive
+from schemas.drive_pb2 import Applied, BaseState, Drive
 from schemas.grasp_pb2 import Grasp
 from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
@@ -46,6 +46,15 @@ class Params:
     random (section V), greedy = the newest policy."""
     evaluation_controller: str = one_of("greedy", "greedy", "lc")
     """Who drives in evaluation: the policy, or the linear law on the continuous state."""
+    evaluation_reset: str = one_of("place", "place", "reverse")
+    """How the robot gets to the next start in evaluation: it is put there, or drives back there itself."""
+    rival_policy: bytes = ruled(b"", "a policy file", is_policy)
+    """Path of the policy that `policy` is compared with; see `rival_controller`."""
+    rival_controller: str = one_of("", "", "greedy", "lc")
+    """Not empty: evaluation trials come in pairs from one start, one driven as `evaluation_controller` says, the other
+    by this one (greedy: by `rival_policy`), in an order drawn from the seed."""
+    shadow: bool = False
+    """Say what the policy would do wherever the object is seen; run no trials, be engaged never."""
     unknown_cells: str = one_of("lc", "lc", "random")
     """Whom greedy asks in a cell that the policy knows nothing about."""
     hold: str = one_of("cell", "cell", "sample")
@@ -91,6 +100,18 @@ class Params:
     """A start's bearing is met within this."""
     reverse_timeout_s: float = positive(40.0)
     """After this a trial begins where the robot is, or another start is drawn."""
+    blame_s: float = positive(3.0)
+    """A late command or a slip longer than this before a trial's end is not its cause."""
+    lock_s: float = positive(2.0)
+    """Turning towards the goal at the limit for so long, and missing it, is called unreachable."""
+    slip_window_s: float = positive(2.0)
+    """Wheels and view are compared over this time."""
+    slip_way_m: float = positive(0.1)
+    """Shorter ways are not compared; 0.2 m are driven in the window."""
+    slip_share: float = between(0.5, 0.0, 1.0)
+    """Slip: the view moves by less than this share of what it used to for the same way."""
+    slip_turn_rad: float = positive(10 * DEG)
+    """Slip: odometry and the table's edge disagree by more about how far the robot has turned in the window."""
     start_share: float = between(0.85, 0.0, 1.0)
     """Starts are drawn within this share of the ranges of beta and alpha, uniformly."""
 
@@ -100,6 +121,7 @@ INPUTS: Mapping[str, Input] = {
     "policy": Port(Policy, Kind.EVENT, optional=True),
     "base": Port(BaseState, Kind.STATE, hz=8),
     "grasp": Port(Grasp, Kind.EVENT, hz=8, optional=True),
+    "applied": Port(Applied, Kind.STATE, hz=8, optional=True),
 }
 OUTPUTS: Mapping[str, Port] = {
     "drive": Port(Drive, Kind.COMMAND, hz=8, per_frame=True, on=("percept",)),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
+from components.pilot.evidence import Evidence, Scale
 from runtime.params import between, not_negative, ruled
 
 
@@ -42,6 +43,21 @@ class Outcome(IntEnum):
     MISSED = 8
 
 
+class Failure(IntEnum):
+    """Numbers of `berth.Trial.Failure`; `components.pilot.diagnosis` has the rules."""
+
+    NO_FAILURE = 0
+    UNREACHABLE = 1
+    OBJECT_LOST = 2
+    MODEL_WRONG = 3
+    LATE_COMMAND = 4
+    SLIP = 5
+    COLLISION = 6
+    TIMEOUT = 7
+    OFF_COURSE = 8
+    PICK_MISSED = 9
+
+
 @dataclass(frozen=True, slots=True)
 class Held:
     """The action that is held until the cell changes."""
@@ -75,6 +91,11 @@ class Heard:
     grasp_ns: int = -1
     grasp_done: bool = False
     picked: bool = False
+    odometry_x_m: float = 0.0
+    odometry_y_m: float = 0.0
+    odometry_heading_rad: float = 0.0
+    late_ns: int = -1
+    """Newest frame in which base let a command go for its age."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +114,9 @@ class Progress:
     """Trials ended in this phase."""
     outcome: int = ruled(int(Outcome.NONE), "an outcome", lambda value: value in tuple(Outcome))
     """Of the newest ended trial."""
+    failure: int = ruled(int(Failure.NO_FAILURE), "a failure", lambda value: value in tuple(Failure))
+    """Why the newest ended trial failed."""
+    failure_ns: int = -1
     over: bool = False
     """The trial has ended; the next frame reverses or places."""
     goal_reached: bool = False
@@ -111,6 +135,8 @@ class Progress:
     """Where the reverse shall end."""
     turning: bool = False
     """The reverse has gone back far enough and turns on the spot."""
+    evidence: Evidence = field(default_factory=Evidence)
+    scale: Scale = field(default_factory=Scale)
 
 
 class Wish(NamedTuple):

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
-from components.pilot import reverse
-from components.pilot.choice import steer
+from components.pilot import diagnosis, reverse
+from components.pilot.choice import steer, table_of
+from components.pilot.evidence import Evidence
 from components.pilot.progress import REST, Heard, Held, Mode, Outcome, Phase, Progress, Step, Wish
 from components.pilot.rules import NS, Rules
 from components.pilot.servo import has_arrived, servo
@@ -46,6 +47,7 @@ def begin(progress: Progress, time_ns: int, number: int) -> Progress:
         held=Held(),
         draws=0,
         turning=False,
+        evidence=Evidence(),
     )
 
 
@@ -53,7 +55,11 @@ def go_on(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """One frame of the trial."""
     seen_ns = frame.time_ns if frame.sight.visible else progress.seen_ns
     progress = replace(progress, answered_ns=frame.time_ns, seen_ns=seen_ns)
-    return _MODES[progress.mode](rules, progress, frame)
+    progress = diagnosis.watched(rules, progress, frame.sight, frame.heard, frame.time_ns)
+    progress, wish = _MODES[progress.mode](rules, progress, frame)
+    if progress.over:
+        return diagnosis.named(rules, progress, frame.heard.late_ns, frame.time_ns), wish
+    return diagnosis.promised(progress, table_of(rules, frame.table, progress)), wish
 
 
 def begin_reverse(rules: Rules, progress: Progress, frame: Frame) -> Progress:
