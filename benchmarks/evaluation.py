@@ -50,9 +50,9 @@ def figures() -> list[Figure]:
     return found
 
 
-def learned_policy(train_s: float, seed: int = 1) -> str:
+def learned_policy(train_s: float, seed: int = 1, overrides: Sequence[str] = ()) -> str:
     """Learn in one process; path of the frozen policy."""
-    system = load(LAUNCH, [f"pilot.train_s={train_s}", "pilot.evaluation_trials=0"], seed=seed)
+    system = load(LAUNCH, [f"pilot.train_s={train_s}", "pilot.evaluation_trials=0", *overrides], seed=seed)
     engine = Lockstep(system)
     policies: deque[Any] = deque(maxlen=1)
     engine.watch("learner/policy", lambda message, _: policies.append(message))

@@ -27,7 +27,9 @@ LISTEN = Annotated[str, typer.Option(help="Let another host's part come in here,
 CONNECT = Annotated[str, typer.Option(help="Where another host's part listens, e.g. tcp/192.168.1.2:7447.")]
 INSECURE = Annotated[bool, typer.Option("--insecure", help="Listen off loopback, open to whoever reaches it.")]
 ONLY = Annotated[str, typer.Option(help="Start only these components, with commas between.")]
-SET = Annotated[list[str] | None, typer.Option("--set", help="COMPONENT.PARAM=VALUE, also task.KEY and session.KEY.")]
+SET = Annotated[
+    list[str] | None, typer.Option("--set", help="COMPONENT.PARAM=VALUE, task.KEY, session.KEY; task=FILE.")
+]
 RECORD = Annotated[Path | None, typer.Option(help="Recording to make; default: recordings/<launch>-<time>.mcap.")]
 NO_RECORD = Annotated[bool, typer.Option("--no-record", help="Record nothing; there is no report then.")]
 DURATION = Annotated[float | None, typer.Option(help="Session seconds to stop after.")]

@@ -10,6 +10,7 @@ from typing import Any
 from runtime.launch import resolve
 from runtime.params import ConfigurationError
 from runtime.recording import Recording
+from runtime.shared_task import owner_of
 from runtime.system import ComponentSpec, System
 
 _PACKAGE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
@@ -39,10 +40,10 @@ def recorded_component(recording: Recording, name: str, overrides: Iterable[str]
     if specs[name].get("tap"):
         raise ConfigurationError(f"{file}: component {name} must be no tap; a tap has nothing that could be replayed")
     own = tuple(overrides)
+    given = {owner_of(override) for override in own}
     for override in own:
-        if override.partition(".")[0] not in {name, "task", "session"}:
+        if owner_of(override) not in {name, "task", "session"}:
             raise ConfigurationError(f"--set {override}: must begin with {name}, task or session")
-    given = {override.partition(".")[0] for override in own}
     if not _PACKAGE.fullmatch(str(specs[name].get("run"))):
         raise ConfigurationError(f"{file}: {name}.run must be a package; got {str(specs[name].get('run'))[:80]!r}")
     try:

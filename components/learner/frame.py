@@ -67,13 +67,13 @@ def percept_of(params: Params, grid: Grid, visible: bool, slope: float, pan_rad:
     sane = abs(slope) < _STEEPEST and abs(pan_rad) <= math.pi and 0.0 < tilt_rad < math.pi / 2  # false for NaN
     if not (visible and sane):
         return UNSEEN
-    beta, alpha = params.task.state(slope, pan_rad, tilt_rad)
+    seen = params.task.seen(slope, pan_rad, tilt_rad)
     return Percept(
         visible=True,
-        cell=grid.cell(beta, alpha),
-        beta_rad=beta,
-        alpha_rad=alpha,
-        too_close=params.task.is_too_close(slope, tilt_rad),
+        cell=grid.cell(seen.beta_rad, seen.alpha_rad),
+        beta_rad=seen.beta_rad,
+        alpha_rad=seen.alpha_rad,
+        too_close=seen.too_close,
     )
 
 

@@ -9,7 +9,7 @@ from components.pilot.sight import Sight
 
 def has_arrived(rules: Rules, sight: Sight) -> bool:
     """Whether the object is as far down in view as at the pick-up."""
-    return abs(rules.task.goal_tilt_rad - sight.tilt_rad) <= rules.params.servo_tolerance_rad
+    return abs(rules.task.arrival_tilt_rad - sight.tilt_rad) <= rules.params.servo_tolerance_rad
 
 
 def servo(rules: Rules, sight: Sight) -> Wish:
@@ -19,7 +19,7 @@ def servo(rules: Rules, sight: Sight) -> Wish:
     within a sample of the pick-up, too fast to stop there.
     """
     params, task = rules.params, rules.task
-    ahead = task.goal_tilt_rad - sight.tilt_rad
+    ahead = task.arrival_tilt_rad - sight.tilt_rad
     if ahead < 0.0:
         return Wish(-params.servo_slowest * task.speed_mps, 0.0, "servo")
     share = ahead / params.servo_slow_tilt_rad if params.servo_slow_tilt_rad > 0.0 else 1.0

@@ -9,12 +9,13 @@ from docking.task import Task
 
 
 class Sight(NamedTuple):
-    """The object relative to the goal. Angles in rad; meaningless unless visible."""
+    """The object relative to the goal, from the axle (`docking.task.Seen`). Meaningless unless visible."""
 
     visible: bool
     beta_rad: float = 0.0
     alpha_rad: float = 0.0
     tilt_rad: float = 0.0
+    """Not relative to the goal's."""
     too_close: bool = False
     """To the table's edge."""
 
@@ -28,11 +29,4 @@ def sight_of(task: Task, visible: bool, slope: float, pan_rad: float, tilt_rad: 
     """Read a percept; numbers that no head and no table edge can give count as not seen."""
     if not visible or not (abs(slope) < STEEPEST and abs(pan_rad) <= math.pi and 0.0 < tilt_rad < math.pi / 2):
         return UNSEEN
-    beta, alpha = task.state(slope, pan_rad, tilt_rad)
-    return Sight(
-        visible=True,
-        beta_rad=beta,
-        alpha_rad=alpha,
-        tilt_rad=tilt_rad,
-        too_close=task.is_too_close(slope, tilt_rad),
-    )
+    return Sight(True, *task.seen(slope, pan_rad, tilt_rad))

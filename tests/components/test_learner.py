@@ -192,8 +192,7 @@ def test_learning_over_the_bus_equals_learning_from_the_same_transitions_off_it(
         if trial.mode != Trial.APPROACH:
             hold = None
             continue
-        beta, alpha = TASK.state(percept.slope, percept.pan_rad, percept.tilt_rad)
-        close = TASK.is_too_close(percept.slope, percept.tilt_rad)
+        beta, alpha, _, close = TASK.seen(percept.slope, percept.pan_rad, percept.tilt_rad)
         cell = -1 if close else grid.cell(beta, alpha)
         if hold is not None and cell != hold[0]:
             n = frame[0].sequence - hold[4]

@@ -27,7 +27,7 @@ def test_the_papers_arctan_reads_30_degrees_as_11_at_tilt_20_and_as_21_at_43():
 
 def test_the_goal_is_the_origin_wherever_it_was_taught():
     task = Task(goal_slope=0.1, goal_pan_rad=0.05)
-    assert task.state(0.1, 0.05, task.goal_tilt_rad) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert task.seen(0.1, 0.05, task.goal_tilt_rad)[:3] == pytest.approx((0.0, 0.0, task.arrival_tilt_rad), abs=1e-12)
 
 
 def test_mirroring_swaps_the_actions():
@@ -44,4 +44,4 @@ def test_too_close_is_a_distance_to_the_tables_edge_not_to_the_object(beta, d):
     if abs(d * math.cos(beta) - nearest_m) < 1e-6:
         return
     tilt = math.atan2(height_m, d)
-    assert task.is_too_close(math.tan(beta) * math.sin(tilt), tilt) == (d * math.cos(beta) < nearest_m)
+    assert task.seen(math.tan(beta) * math.sin(tilt), 0.0, tilt).too_close == (d * math.cos(beta) < nearest_m)
