@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import IO
 
 from runtime.assignment import Assignment
+from runtime.device import kind_of
 
 ENVIRONMENT = {
     # Results must not depend on the number of cores.
@@ -24,10 +25,14 @@ _LINE_BYTES = 8192
 
 
 class Child:
-    """A spawned process in a group of its own, so that Ctrl-C reaches the supervisor alone."""
+    """A spawned process in a group of its own, so that Ctrl-C reaches the supervisor alone.
+
+    One that reads the terminal stays in the supervisor's group: the system lets no other read it.
+    """
 
     def __init__(self, assignment: Assignment, log: Path) -> None:
         """Start it; its output is appended to its log."""
+        kind = kind_of(assignment.system.component(assignment.name))
         self.name = assignment.name
         self.log = log
         with log.open("ab") as stream:
@@ -37,7 +42,7 @@ class Child:
                 stdout=stream,
                 stderr=subprocess.STDOUT,
                 env={**os.environ, **ENVIRONMENT},
-                process_group=0,
+                process_group=None if kind is not None and kind.terminal else 0,
             )
         self._input: IO[bytes] | None = self._process.stdin
         self._tell(assignment.to_json().encode() + b"\n")

@@ -15,6 +15,8 @@ TICK, GONE, STALL = "tick", "gone", "stall"
 """Names of the inputs that the shell itself feeds."""
 STOP = "stop"
 """The last event of a run; every component gets it, none declares it."""
+DEVICE, ACTUATE = "device", "actuate"
+"""Ports of a component that has a device: what the device reads, and what it is told (see `DeviceKind`)."""
 
 
 class Message(Protocol):
@@ -82,6 +84,42 @@ class Stall:
 Input = Port | Tick | Peers | Stall
 
 
+@dataclass(frozen=True, slots=True)
+class DeviceKind:
+    """One thing of the world that a component can be given: an entry of its ports' table `DEVICES`.
+
+    The launch file chooses it with `device = { kind = "NAME", ... }`. The live shell opens it, reads it on a thread of
+    its own, publishes each reading on the component's output `device` and hands it over on the input `device`, so that
+    it is in the log and a replay needs no device. What `handle` says on the output `actuate` is written to it.
+    """
+
+    run: str
+    """`module:Class` of a `Device`, made with the parameters; imported only where it is opened."""
+    params: type[Any]
+    """Frozen dataclass of the rest of the launch file's table."""
+    terminal: bool = False
+    """Reads the terminal that the session was started in, so its process must be in the foreground with it."""
+
+
+class Device(Protocol):
+    """What stands between a component and the world; lives in the component's process, in its folder `devices/`.
+
+    `read` and `close` are called on the reader's thread, `write` on the thread that calls `handle`.
+    """
+
+    def read(self, timeout_s: float) -> Message | None:
+        """Wait for a reading, at most so long; None = nothing yet. Raises DeviceError when the device is gone."""
+        ...
+
+    def write(self, message: Any) -> None:
+        """Carry a command out at once, without waiting. Raises DeviceError."""
+        ...
+
+    def close(self) -> None:
+        """Leave the device as it was found, at rest; never raises."""
+        ...
+
+
 class Event(NamedTuple):
     """One call of `handle`."""
 
@@ -120,3 +158,7 @@ class Component(Protocol):
 
 class ComponentError(Exception):
     """A component can not go on; the shell ends its process with this one line."""
+
+
+class DeviceError(ComponentError):
+    """A device can not be opened, or is gone; the message names it and says what to do."""

@@ -13,8 +13,11 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, cast
 
+from runtime.device import checked_device
+from runtime import shared_task
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
+from runtime.toml_file import read_toml
 
 _REALM = re.compile(r"[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -37,8 +40,8 @@ def load(
 
     Args:
         file: path of the TOML file.
-        overrides: `component.param=value`, `task.key=value` or `session.key=value`; the value as in TOML, text may
-            stand without quotes.
+        overrides: `component.param=value`, `task.key=value`, `session.key=value`, or `task=FILE` for the fields of a
+            task file; the value as in TOML, text may stand without quotes.
         clock: as on the command line; empty = as in the file.
         seed: as on the command line; None = as in the file.
         host: the machine that this is; empty = all components run here.
@@ -48,7 +51,8 @@ def load(
     Raises:
         ConfigurationError: one line that names file, key, value and rule.
     """
-    table = _parsed(Path(file))
+    table = read_toml(Path(file))
+    shared_task.include(table, str(file))
     for override in overrides:
         _override(table, override)
     session = dict(_table(table, "session", str(file), _SESSION))
@@ -96,24 +100,18 @@ def _selected(system: System, host: str, only: Collection[str], recording: Path 
     return dataclasses.replace(system, components=tuple(kept), host=host)
 
 
-def _parsed(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigurationError(f"{path}: can not be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"{path}: is not TOML: {error}") from None
-
-
 def _override(table: dict[str, Any], override: str) -> None:
     key, sign, text = override.partition("=")
     owner, _, name = key.partition(".")
-    if not sign or not name:
-        raise ConfigurationError(f"--set {override}: must be COMPONENT.PARAM=VALUE")
+    if not sign or not (name or key == shared_task.TASK):
+        raise ConfigurationError(f"--set {override}: must be COMPONENT.PARAM=VALUE or task=FILE")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         value = text
+    if shared_task.is_file(table, owner, name, value):
+        shared_task.take(table, value, f"--set {override}:")
+        return
     if owner in {"session", "task"}:
         table.setdefault(owner, {})[name] = value
         return
@@ -150,6 +148,7 @@ def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -
     if not isinstance(components, dict) or not components:
         raise ConfigurationError(f"{file}: component must be a table of at least one component")
     specs = tuple(_component(name, entry, _shared(table, clock), seed, file) for name, entry in components.items())
+    shared_task.check_same(specs, file)
     keys = {key: str(session[key]) for key in ("end", "trial", "truth")}
     return System(file, realm, clock, pace, seed, float(stall_s), **keys, components=specs, text="")
 
@@ -202,7 +201,7 @@ def _component(name: str, entry: Any, shared: Mapping[str, Any], seed: int, file
         host=host,
         restart=restart,
         restart_limit=limit,
-        device=_mapping(entry, "device", where),
+        device=checked_device(run, _mapping(entry, "device", where), f"{where}.device"),
         inputs=_strings(entry, "inputs", where),
         outputs={port: aliases.get(port, f"{name}/{port}") for port in ports.OUTPUTS},
         params=_params(ports.Params, _mapping(entry, "params", where), shared, where),

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from runtime.attached import Attached
 from runtime.clock import SECOND_NS, FrameClock, PacedClock, Pacer, TickSchedule
-from runtime.contract import GONE, STALL, STOP, TICK, Event, Port, Stall, Tick
+from runtime.contract import ACTUATE, DEVICE, GONE, STALL, STOP, TICK, Device, Event, Port, Stall, Tick
 from runtime.door import FAILURE
 from runtime.hosted import Hosted
 from runtime.inbox import Arrival, Notice
-from runtime.journal import JournalWriter
+from runtime.journal import LOADED, JournalWriter
 from runtime.station import Station
 from runtime.wire import Decoder, Refused
 from runtime.wiring import publishers
@@ -31,12 +33,13 @@ _SLICE_NS = 20_000_000
 class Fold:
     """Runs one component until it is asked to stop."""
 
-    def __init__(self, station: Station, hosted: Hosted) -> None:
+    def __init__(self, station: Station, hosted: Hosted, device: Device | None = None) -> None:
         """Subscribe to the component's wired inputs.
 
         Args:
             station: connected, not joined yet.
             hosted: the component.
+            device: opened; closed at the end of `run`.
         """
         self._station = station
         self._hosted = hosted
@@ -68,6 +71,17 @@ class Fold:
         if not self._patient:
             station.door.serve = self._serve_at_once
         self._decoders = self._subscribe()
+        self._device = None if device is None else self._attached(device)
+
+    def _attached(self, device: Device) -> Attached:
+        box = next((box for box in self._inbox.boxes if box.name == DEVICE), None)
+        return Attached(device, box, self._station.outlets.ports.get(DEVICE), self._deliver, self._station.failed)
+
+    def _deliver(self, reading: Arrival) -> None:
+        """On the device's thread: as if zenoh had brought it."""
+        self._inbox.put(reading)
+        if self._station.door.serve is not None:
+            self._station.door.serve()
 
     def _subscribe(self) -> dict[str, Decoder]:
         sources = publishers(self._station.system)
@@ -97,18 +111,35 @@ class Fold:
             if self._lockstep:
                 self._inbox.hold_back()
             with self._turn:
+                self._resume()
                 if self._ticks is not None and self._lockstep and not self._station.stop.asked:
                     self._tick_up_to(0)
             self._open = True
+            if self._device is not None and not self._station.stop.asked:
+                self._device.start(self._clock.session_ns)
             while not self._station.stop.asked:
                 self._attend()
             with self._turn:
                 self._hand(self._own_event(STOP, self._now_ns()))
         finally:
             self._open = False
+            if self._device is not None:
+                self._device.close()
             self._flush_journal()
             self._publish_status()
             self._station.close()
+
+    def _resume(self) -> None:
+        """Go on from the snapshot that the supervisor has kept, if there is one; without it, start cold."""
+        kept = self._station.assignment.snapshot
+        if kept is None:
+            return
+        try:
+            self._hosted.load(Path(kept.file).read_bytes())
+        except (OSError, ValueError) as reason:
+            print(f"starts cold, its snapshot can not be loaded: {reason}", flush=True)  # noqa: T201
+            return
+        self._journal.add(LOADED, kept.run, kept.sequence, self._now_ns(), time.monotonic_ns())
 
     def _attend(self) -> None:
         """One round of the main thread: duties of time, then whatever waits, then a rest."""
@@ -191,7 +222,9 @@ class Fold:
         self._newest_ns[port] = max(stamp.capture_ns, self._newest_ns.get(port, 0))
         if self._lockstep and self._ticks is not None:
             self._tick_up_to(max(stamp.capture_ns, self._frames.now_ns))
-        time_ns = self._frames.advance(max(stamp.capture_ns, self._now_ns()))
+        # Another host's clock does not move this one's; in lockstep there is only one.
+        least_ns = 0 if port in self._foreign and not self._lockstep else stamp.capture_ns
+        time_ns = self._frames.advance(max(least_ns, self._now_ns()))
         self._hand(Event(time_ns, port, message, *_cause(stamp)))
 
     def _check_capture(self, port: str, capture_ns: int) -> None:
@@ -242,7 +275,10 @@ class Fold:
         for sample in self._hosted.handle(event):
             if self._pacer is not None and sample.capture_ns > event.time_ns:
                 self._wait(self._pacer.wait_ns(sample.capture_ns, time.monotonic_ns()))
-            self._outlets[sample.key].send(sample.payload, sample.sequence, sample.capture_ns)
+            outlet = self._outlets[sample.key]
+            if self._device is not None and outlet is self._station.outlets.ports.get(ACTUATE):
+                self._device.write(outlet.schema.FromString(sample.payload))
+            outlet.send(sample.payload, sample.sequence, sample.capture_ns)
 
     def _wait(self, wait_ns: int) -> None:
         """Keep the world's next frame back until its wall time."""

@@ -22,7 +22,8 @@ class Outlet:
         self.schema = schema
         self.sequence = 0
         """Of the next message."""
-        self._run = run
+        self.run = run
+        """Run id that every message names."""
         self._publisher = session.declare_publisher(
             f"{realm}/{key}",
             encoding=zenoh.Encoding(encoding_of(schema)),
@@ -48,7 +49,7 @@ class Outlet:
 
     def send(self, payload: bytes, sequence: int, capture_ns: int) -> None:
         """Publish bytes that have their sequence already."""
-        self._publisher.put(payload, attachment=pack_stamp(self._run, sequence, capture_ns))
+        self._publisher.put(payload, attachment=pack_stamp(self.run, sequence, capture_ns))
         self.sequence = sequence + 1
 
 

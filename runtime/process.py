@@ -16,6 +16,7 @@ import traceback
 
 from runtime.assignment import Assignment
 from runtime.contract import ComponentError
+from runtime.device import opened
 from runtime.hosted import Hosted
 from runtime.live import Fold, is_on_control_path
 from runtime.params import ConfigurationError
@@ -37,7 +38,7 @@ def main() -> int:
     """Run the component; returns the exit code."""
     assignment = Assignment.from_json(sys.stdin.readline())
     stop = Stop()
-    for number in (signal.SIGTERM, signal.SIGINT):
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, lambda *_: stop.ask())
     follow_supervisor()
     sys.setswitchinterval(_SWITCH_S)
@@ -67,7 +68,8 @@ def run_component(assignment: Assignment, stop: Stop) -> None:
         shell = Tap(Station(assignment, tap.outputs, run, stop), tap)
     else:
         hosted = Hosted(spec, run, assignment.system.file)
-        shell = Fold(Station(assignment, hosted.outputs, run, stop), hosted)
+        device = opened(spec, assignment.system.file)
+        shell = Fold(Station(assignment, hosted.outputs, run, stop), hosted, device)
     gc.freeze()  # what exists now stays; later collections need not look at it
     shell.run()
 

@@ -73,7 +73,7 @@ class Station:
         Raises:
             ComponentError: a peer did not come in time; it is named.
         """
-        watch(self.session, self.system.realm, self.presence, self._peer_changed, self._failed)
+        watch(self.session, self.system.realm, self.presence, self._peer_changed, self.failed)
         for stage in (LISTENS, STARTS):
             key = ready_key(self.system.realm, stage, self.assignment.name, self.run)
             self._tokens.append(self.session.liveliness().declare_token(key))
@@ -99,7 +99,8 @@ class Station:
         elif self._started and not self.stop.asked and name in self._names:
             self.inbox.notify(Notice(GONE, (name, run)))
 
-    def _failed(self, failure: BaseException) -> None:
+    def failed(self, failure: BaseException) -> None:
+        """Let the main thread raise what another one met; from any thread."""
         self.inbox.notify(Notice(FAILURE, failure))
 
     def status(self, handled: int) -> Status:

@@ -19,16 +19,18 @@ GRIPPER_LIFT: GripperAction
 GRIPPER_RELEASE: GripperAction
 
 class Drive(_message.Message):
-    __slots__ = ("engaged", "v_mps", "omega_radps", "gripper")
+    __slots__ = ("engaged", "v_mps", "omega_radps", "gripper", "dead_man")
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
     V_MPS_FIELD_NUMBER: _ClassVar[int]
     OMEGA_RADPS_FIELD_NUMBER: _ClassVar[int]
     GRIPPER_FIELD_NUMBER: _ClassVar[int]
+    DEAD_MAN_FIELD_NUMBER: _ClassVar[int]
     engaged: bool
     v_mps: float
     omega_radps: float
     gripper: GripperAction
-    def __init__(self, engaged: _Optional[bool] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., gripper: _Optional[_Union[GripperAction, str]] = ...) -> None: ...
+    dead_man: bool
+    def __init__(self, engaged: _Optional[bool] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., gripper: _Optional[_Union[GripperAction, str]] = ..., dead_man: _Optional[bool] = ...) -> None: ...
 
 class Applied(_message.Message):
     __slots__ = ("v_mps", "omega_radps", "commander", "gripper")
@@ -43,17 +45,21 @@ class Applied(_message.Message):
     def __init__(self, v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., commander: _Optional[str] = ..., gripper: _Optional[_Union[GripperAction, str]] = ...) -> None: ...
 
 class BaseCommand(_message.Message):
-    __slots__ = ("v_mps", "omega_radps", "gripper")
+    __slots__ = ("v_mps", "omega_radps", "gripper", "lift_reversed", "fingers_reversed")
     V_MPS_FIELD_NUMBER: _ClassVar[int]
     OMEGA_RADPS_FIELD_NUMBER: _ClassVar[int]
     GRIPPER_FIELD_NUMBER: _ClassVar[int]
+    LIFT_REVERSED_FIELD_NUMBER: _ClassVar[int]
+    FINGERS_REVERSED_FIELD_NUMBER: _ClassVar[int]
     v_mps: float
     omega_radps: float
     gripper: GripperAction
-    def __init__(self, v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., gripper: _Optional[_Union[GripperAction, str]] = ...) -> None: ...
+    lift_reversed: bool
+    fingers_reversed: bool
+    def __init__(self, v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., gripper: _Optional[_Union[GripperAction, str]] = ..., lift_reversed: _Optional[bool] = ..., fingers_reversed: _Optional[bool] = ...) -> None: ...
 
 class BaseState(_message.Message):
-    __slots__ = ("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "v_mps", "omega_radps", "bumper", "inner_beam", "outer_beam", "lift_up", "lift_down", "fingers_closed", "guard")
+    __slots__ = ("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "v_mps", "omega_radps", "bumper", "inner_beam", "outer_beam", "lift_up", "lift_down", "fingers_closed", "guard", "rear_range_m", "rear_bumper")
     ODOMETRY_X_M_FIELD_NUMBER: _ClassVar[int]
     ODOMETRY_Y_M_FIELD_NUMBER: _ClassVar[int]
     ODOMETRY_HEADING_RAD_FIELD_NUMBER: _ClassVar[int]
@@ -66,6 +72,8 @@ class BaseState(_message.Message):
     LIFT_DOWN_FIELD_NUMBER: _ClassVar[int]
     FINGERS_CLOSED_FIELD_NUMBER: _ClassVar[int]
     GUARD_FIELD_NUMBER: _ClassVar[int]
+    REAR_RANGE_M_FIELD_NUMBER: _ClassVar[int]
+    REAR_BUMPER_FIELD_NUMBER: _ClassVar[int]
     odometry_x_m: float
     odometry_y_m: float
     odometry_heading_rad: float
@@ -78,4 +86,6 @@ class BaseState(_message.Message):
     lift_down: bool
     fingers_closed: bool
     guard: bool
-    def __init__(self, odometry_x_m: _Optional[float] = ..., odometry_y_m: _Optional[float] = ..., odometry_heading_rad: _Optional[float] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., bumper: _Optional[bool] = ..., inner_beam: _Optional[bool] = ..., outer_beam: _Optional[bool] = ..., lift_up: _Optional[bool] = ..., lift_down: _Optional[bool] = ..., fingers_closed: _Optional[bool] = ..., guard: _Optional[bool] = ...) -> None: ...
+    rear_range_m: float
+    rear_bumper: bool
+    def __init__(self, odometry_x_m: _Optional[float] = ..., odometry_y_m: _Optional[float] = ..., odometry_heading_rad: _Optional[float] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., bumper: _Optional[bool] = ..., inner_beam: _Optional[bool] = ..., outer_beam: _Optional[bool] = ..., lift_up: _Optional[bool] = ..., lift_down: _Optional[bool] = ..., fingers_closed: _Optional[bool] = ..., guard: _Optional[bool] = ..., rear_range_m: _Optional[float] = ..., rear_bumper: _Optional[bool] = ...) -> None: ...

@@ -1,0 +1,1 @@
+"""A person's keys or gamepad, with a dead-man key: one more commander of the base."""

@@ -1,0 +1,73 @@
+"""Which device a component is given: the launch file's table, checked, and opened."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any, cast
+
+from runtime.contract import Device, DeviceKind
+from runtime.params import ConfigurationError, build
+from runtime.system import ComponentSpec, System, ports_of
+
+SIMULATED = "simulator"
+"""The kind that is no device: the input `device` is wired to a component of the same system."""
+
+
+def kind_of(spec: ComponentSpec) -> DeviceKind | None:
+    """The device that a component is to be given; None for one that has none or a simulated one."""
+    return kinds(spec.run).get(str(spec.device.get("kind", SIMULATED)))
+
+
+def kinds(run: str) -> Mapping[str, DeviceKind]:
+    """The devices that a component knows."""
+    return cast("Mapping[str, DeviceKind]", getattr(ports_of(run), "DEVICES", {}))
+
+
+def checked_device(run: str, table: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    """A launch file's `device` table, as it is.
+
+    Raises:
+        ConfigurationError: an unknown kind or key, a broken rule.
+    """
+    if not table or table.get("kind") == SIMULATED:
+        return table
+    known, name = kinds(run), table.get("kind")
+    if not isinstance(name, str) or name not in known:
+        raise ConfigurationError(f"{where}.kind must be one of {', '.join([*known, SIMULATED])}; got {name!r}")
+    build(known[name].params, _without_kind(table), where)
+    return table
+
+
+def check_clock(system: System) -> None:
+    """Refuse devices in lockstep: the world does not wait for anybody's answer.
+
+    Raises:
+        ConfigurationError: names the first device.
+    """
+    for spec in system.here:
+        if system.clock == "lockstep" and kind_of(spec) is not None:
+            raise ConfigurationError(
+                f"{system.file}: {spec.name}.device must be {SIMULATED!r} in lockstep, the world keeps its own time "
+                f"(--clock real); got {spec.device['kind']!r}"
+            )
+
+
+def opened(spec: ComponentSpec, file: str) -> Device | None:
+    """Open a component's device, if it has one.
+
+    Raises:
+        DeviceError: it can not be opened.
+        ConfigurationError: its table is not valid.
+    """
+    kind = kind_of(spec)
+    if kind is None:
+        return None
+    params = build(kind.params, _without_kind(spec.device), f"{file}: {spec.name}.device")
+    module, _, name = kind.run.partition(":")
+    device: Device = getattr(importlib.import_module(module), name)(params)
+    return device
+
+
+def _without_kind(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key != "kind"}
