@@ -35,6 +35,8 @@ def run_in_process(system: System, watch: Watch, started: str, duration_s: float
         watch.take(message, capture_ns)
         watch.messages = engine.messages
         watch.show()
+        if watch.over:
+            engine.stop(watch.over)
 
     for key in (system.trial, system.truth):
         if key:

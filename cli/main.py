@@ -14,6 +14,8 @@ from runtime.params import ConfigurationError
 
 VERBS: dict[str, str] = {
     "run": "cli.run:run",
+    "compare": "cli.compare:compare",
+    "import": "cli.intake.command:intake",
     "ps": "cli.ps:ps",
     "stop": "cli.stop:stop",
     "logs": "cli.logs:logs",

@@ -52,6 +52,8 @@ def _follow(supervisor: Supervisor, watch: Watch, waiting: deque[tuple[Any, int]
         _take_all(watch, waiting)
         watch.note = supervisor.note
         watch.show()
+        if watch.over:
+            supervisor.stop_soon(watch.over)
         if duration_s is not None and watch.board.robot_s >= duration_s:
             supervisor.stop_soon("duration")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -32,6 +33,7 @@ SET = Annotated[
 ]
 RECORD = Annotated[Path | None, typer.Option(help="Recording to make; default: recordings/<launch>-<time>.mcap.")]
 NO_RECORD = Annotated[bool, typer.Option("--no-record", help="Record nothing; there is no report then.")]
+SHADOW = Annotated[str, typer.Option(help="Policy to run beside, logged, not driven: a file, lc, or learner.")]
 DURATION = Annotated[float | None, typer.Option(help="Session seconds to stop after.")]
 CLOCK = Annotated[str, typer.Option(help="lockstep, real, or a factor of real time.")]
 IN_PROCESS = Annotated[bool, typer.Option("--in-process", help="One process, virtual clock, repeatable.")]
@@ -54,6 +56,7 @@ def run(
     clock: CLOCK = "",
     in_process: IN_PROCESS = False,
     seed: SEED = None,
+    shadow: SHADOW = "",
     as_json: JSON = False,
     quiet: QUIET = False,
 ) -> None:
@@ -71,15 +74,15 @@ def run(
         only=tuple(name for name in only.split(",") if name),
         recording=None if no_record else record or recording_name(launch, started),
     )
-    if system.recording is not None:
-        _check_recording(system.recording)
+    if shadow:
+        from cli.shadow import with_shadow  # noqa: PLC0415
+
+        system = with_shadow(system, shadow)
+    check_recording(system)
     _check_hosts(system, link, in_process=in_process)
     with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
         watch = Watch(progress)
-        if in_process:
-            failed, reason = _run_in_process(system, watch, started.isoformat(timespec="seconds"), duration)
-        else:
-            failed, reason = _run_on_bus(system, watch, duration, link)
+        failed, reason = execute(system, watch, started, duration, link, in_process=in_process)
     summary = watch.summary(reason, system.recording)
     if summary.recording and watch.board.scorer.trials:
         summary.report = _report(system.recording)
@@ -87,8 +90,20 @@ def run(
     raise typer.Exit(1 if failed else 0)
 
 
-def _check_recording(file: Path) -> None:
+def execute(
+    system: System, watch: Watch, started: datetime, duration: float | None, link: Link, *, in_process: bool
+) -> tuple[bool, str]:
+    """Run a system to its end, in this process or on the bus. Returns (failed, reason)."""
+    if in_process:
+        return _run_in_process(system, watch, started.isoformat(timespec="seconds"), duration)
+    return _run_on_bus(system, watch, duration, link)
+
+
+def check_recording(system: System) -> None:
     """Refuse at once what the recorder's process would refuse after the start."""
+    file = system.recording
+    if file is None:
+        return
     if file.exists():
         raise ConfigurationError(f"{file}: must not exist yet; a recording is never overwritten")
     try:

@@ -46,6 +46,8 @@ class Watch:
         self.lost = 0
         self.note = ""
         """What is wrong at the moment, in words."""
+        self.over = ""
+        """Why the session shall end now; empty as long as it shall not."""
         self._progress = progress
         self._began_s = time.monotonic()
 

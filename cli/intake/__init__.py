@@ -1,0 +1,1 @@
+"""Brings data of others into a session."""
