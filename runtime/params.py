@@ -53,6 +53,11 @@ def between(default: Number, low: float, high: float) -> Number:
     return ruled(default, f"between {low:g} and {high:g}", lambda value: low <= value <= high)
 
 
+def scale(default: float = 1.0) -> float:
+    """Field of a factor between a robot's units and its device's; negative = the other way round."""
+    return ruled(default, "not 0 and between -1000 and 1000", lambda value: value != 0.0 and abs(value) <= 1000.0)
+
+
 def odd(default: int) -> int:
     """Field that must be an odd number of at least 3, so that there is a cell in the middle."""
     return ruled(default, "odd and at least 3", lambda value: value >= 3 and value % 2 == 1)

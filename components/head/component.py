@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from components.head import ports
-from components.head.core import Motion, limited, readable
+from components.head.core import Motion, limited, readable, wired
 from runtime.contract import Event, Output
 from schemas.head_pb2 import HeadCommand, HeadState
 
@@ -34,12 +34,14 @@ class Head:
         return (self._state(event.message) if event.port == "device" else self._actuate(event.message),)
 
     def _state(self, reading: HeadState) -> Output:
-        if not readable(reading.pan_rad, reading.tilt_rad):
+        pan_rad = self._params.pan_encoder_scale * reading.pan_rad
+        tilt_rad = self._params.tilt_encoder_scale * reading.tilt_rad
+        if not readable(pan_rad, tilt_rad):
             return Output("state", HeadState(pan_rad=math.nan, tilt_rad=math.nan))
-        self._held = Motion(reading.pan_rad, reading.tilt_rad)
-        return Output("state", HeadState(pan_rad=reading.pan_rad, tilt_rad=reading.tilt_rad))
+        self._held = Motion(pan_rad, tilt_rad)
+        return Output("state", HeadState(pan_rad=pan_rad, tilt_rad=tilt_rad))
 
     def _actuate(self, aim: HeadCommand) -> Output:
         wish = Motion(aim.pan_rad, aim.tilt_rad, aim.pan_rate_radps, aim.tilt_rate_radps)
         self._held = limited(wish, self._held, self._params)
-        return Output("actuate", HeadCommand(**self._held._asdict()))
+        return Output("actuate", HeadCommand(**wired(self._held, self._params)._asdict()))

@@ -34,6 +34,14 @@ def limited(wish: Motion, held: Motion, params: Params) -> Motion:
     )
 
 
+def wired(motion: Motion, params: Params) -> Motion:
+    """The motion as the device wants it."""
+    pan, tilt = params.pan_scale, params.tilt_scale
+    return Motion(
+        pan * motion.pan_rad, tilt * motion.tilt_rad, pan * motion.pan_rate_radps, tilt * motion.tilt_rate_radps
+    )
+
+
 def readable(pan_rad: float, tilt_rad: float) -> bool:
     """Whether these are angles that encoders can read."""
     return abs(pan_rad) <= UNREADABLE_RAD and abs(tilt_rad) <= UNREADABLE_RAD

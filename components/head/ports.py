@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from docking.angles import DEG
 from runtime.contract import Input, Kind, Port
-from runtime.params import between, positive
+from runtime.params import between, positive, scale
 from schemas.head_pb2 import HeadCommand, HeadState
 
 
@@ -25,6 +25,14 @@ class Params:
     """Fastest pan. VC-C4: 800 pulses/s of 0.1125 deg."""
     tilt_rate_radps: float = positive(622 * 0.1125 * DEG)
     """Fastest tilt. VC-C4: 622 pulses/s of 0.1125 deg."""
+    pan_scale: float = scale()
+    """What the device is told for 1 rad to the left; -1 = it turns the other way. `berth check hardware` tells."""
+    tilt_scale: float = scale()
+    """What the device is told for 1 rad down."""
+    pan_encoder_scale: float = scale()
+    """Radians to the left for 1 of the device's encoder."""
+    tilt_encoder_scale: float = scale()
+    """Radians down for 1 of the device's encoder."""
 
 
 INPUTS: Mapping[str, Input] = {

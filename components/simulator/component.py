@@ -6,6 +6,7 @@ import numpy as np
 
 from components.simulator import ports
 from components.simulator.base import Twist
+from components.simulator.beginning import first_start
 from components.simulator.commands import STALLS, Gate
 from components.simulator.head import Target
 from components.simulator.messages import Placing, Reporter
@@ -48,8 +49,7 @@ class Simulator:
         return self._lockstep(self._world, event)
 
     def _begin(self, time_ns: int) -> tuple[Output, ...]:
-        first = start(self._params.starts, self._seed, 0, self._params.task)
-        self._world = World(self._params, first, time_ns)
+        self._world = World(self._params, first_start(self._params, self._seed), time_ns)
         scales = np.random.default_rng([self._seed, 0, ODOMETRY_STREAM]).normal(1.0, self._params.odometry_scale, 2)
         self._world.odometry_scale = (float(scales[0]), float(scales[1]))
         return self._frame(self._world)
@@ -96,11 +96,19 @@ class Simulator:
         """Obey a command; nonsense in it moves nothing."""
         message = event.message
         if event.port == "drive":
-            world.base.command(Twist(message.v_mps, message.omega_radps), arrival_ns)
-            world.gripper.command(message.gripper)
+            wiring = self._params.wiring
+            twist = Twist(wiring.forward * message.v_mps, wiring.turn * message.omega_radps)
+            world.base.command(twist, arrival_ns)
+            reversals = (
+                message.lift_reversed != wiring.lift_reversed,
+                message.fingers_reversed != wiring.fingers_reversed,
+            )
+            world.gripper.command(message.gripper, *reversals)
         elif event.port == "aim":
-            angles = (message.pan_rad, message.tilt_rad, message.pan_rate_radps, message.tilt_rate_radps)
-            world.head.follow(Target(*angles, event.capture_ns))
+            pan, tilt = self._params.wiring.pan, self._params.wiring.tilt
+            angles = (pan * message.pan_rad, tilt * message.tilt_rad)
+            rates = (pan * message.pan_rate_radps, tilt * message.tilt_rate_radps)
+            world.head.follow(Target(*angles, *rates, event.capture_ns))
         elif event.port == "trial" and message.place:
             self._place = (message.phase, message.number, message.start)
         self._gate.answer(event.port, event.capture_ns)

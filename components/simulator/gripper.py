@@ -32,27 +32,45 @@ class Gripper:
         self.fingers = 1.0
         self.gripping = False
         self._action = Action.LIFT
+        self._lift_reversed = self._fingers_reversed = False
 
-    def command(self, action: int) -> None:
-        """Begin an action; KEEP and unknown numbers go on with the last one."""
+    def command(self, action: int, lift_reversed: bool = False, fingers_reversed: bool = False) -> None:
+        """Begin an action, its motors the other way round if so said; KEEP and unknown numbers go on with the last."""
         if action in {Action.LOWER, Action.CLOSE, Action.LIFT, Action.RELEASE}:
             self._action = Action(action)
+            self._lift_reversed, self._fingers_reversed = lift_reversed, fingers_reversed
+
+    def begin_lowered(self) -> None:
+        """Be down, with open fingers."""
+        self.lift, self._action = 0.0, Action.LOWER
 
     def step(self, ahead_m: float, left_m: float, dt_s: float) -> None:
         """Move for `dt_s`. The object's centre is `ahead_m`, `left_m` of the gripper point while it is not gripped."""
         match self._action:
             case Action.LOWER:
-                self._open(dt_s)
-                self.lift = max(0.0, self.lift - dt_s / self._params.lower_s)
+                self._move_fingers(True, ahead_m, left_m, dt_s)
+                self._move_lift(False, dt_s)
             case Action.CLOSE:
-                self._close(ahead_m, left_m, dt_s)
+                self._move_fingers(False, ahead_m, left_m, dt_s)
             case Action.LIFT:
-                self.lift = min(1.0, self.lift + dt_s / self._params.lift_s)
+                self._move_lift(True, dt_s)
             case Action.RELEASE:
-                self._open(dt_s)
-                self.lift = min(1.0, self.lift + dt_s / self._params.lift_s)
+                self._move_fingers(True, ahead_m, left_m, dt_s)
+                self._move_lift(True, dt_s)
             case _:
                 pass
+
+    def _move_lift(self, up: bool, dt_s: float) -> None:
+        if up != self._lift_reversed:
+            self.lift = min(1.0, self.lift + dt_s / self._params.lift_s)
+        else:
+            self.lift = max(0.0, self.lift - dt_s / self._params.lower_s)
+
+    def _move_fingers(self, apart: bool, ahead_m: float, left_m: float, dt_s: float) -> None:
+        if apart != self._fingers_reversed:
+            self._open(dt_s)
+        else:
+            self._close(ahead_m, left_m, dt_s)
 
     def _open(self, dt_s: float) -> None:
         self.gripping = False

@@ -37,6 +37,7 @@ class Reporter:
         self._seed = seed
         self._painter = Painter(params)
         self._sensor = Sensor(params, seed)
+        self._wiring = params.wiring
 
     def frame(self, world: World, number: int, placing: Placing) -> tuple[Output, ...]:
         """Image, encoders, base and truth, each stamped with the world's time."""
@@ -50,15 +51,16 @@ class Reporter:
         )
 
     def _image(self, world: World, chance: np.random.Generator) -> CompressedImage:
-        clean = self._painter.image(world.camera, world.object_m)
+        seen = world.past.seen(world.moment)
+        clean = self._painter.image(seen.camera, seen.object_m)
         image = CompressedImage(frame_id="camera", format="jpeg")
-        image.data = self._sensor.expose(clean, self._params.exposure_s * world.image_motion_pxps, chance)
+        image.data = self._sensor.expose(clean, self._params.exposure_s * seen.motion_pxps, chance)
         image.timestamp.FromNanoseconds(world.time_ns)
         return image
 
     def _head(self, world: World, chance: np.random.Generator) -> HeadState:
-        pan_rad, tilt_rad = (self._encoder(angle, chance) for angle in world.head.angles_rad)
-        return HeadState(pan_rad=pan_rad, tilt_rad=tilt_rad)
+        pan_rad, tilt_rad = (self._encoder(angle, chance) for angle in world.past.read(world.moment))
+        return HeadState(pan_rad=self._wiring.pan_encoder * pan_rad, tilt_rad=self._wiring.tilt_encoder * tilt_rad)
 
     def _encoder(self, angle_rad: float, chance: np.random.Generator) -> float:
         reading = angle_rad + self._params.encoder_noise_rad * float(chance.standard_normal())
@@ -67,14 +69,15 @@ class Reporter:
 
     def _base(self, world: World, chance: np.random.Generator) -> BaseState:
         noise_v, noise_omega = (float(value) for value in chance.standard_normal(2))
-        base, gripper, odometry = world.base, world.gripper, world.odometry
-        inner, outer = gripper.beams(*world.object_from_gripper)
+        base, gripper, wiring = world.base, world.gripper, self._wiring
+        x_m, y_m, heading_rad = wiring.odometry_read(*world.odometry.triple)
+        inner, outer = wiring.beams(*gripper.beams(*world.object_from_gripper))
         return BaseState(
-            odometry_x_m=odometry.x_m,
-            odometry_y_m=odometry.y_m,
-            odometry_heading_rad=odometry.heading_rad,
-            v_mps=base.v_mps + self._params.speed_noise_mps * noise_v,
-            omega_radps=base.omega_radps + self._params.turn_noise_radps * noise_omega,
+            odometry_x_m=x_m,
+            odometry_y_m=y_m,
+            odometry_heading_rad=heading_rad,
+            v_mps=wiring.odometry * (base.v_mps + self._params.speed_noise_mps * noise_v),
+            omega_radps=wiring.heading * (base.omega_radps + self._params.turn_noise_radps * noise_omega),
             bumper=base.bumper,
             inner_beam=inner,
             outer_beam=outer,

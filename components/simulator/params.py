@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from components.simulator.wiring import Wiring
 from docking.angles import DEG
 from docking.task import Task
 from runtime.params import between, not_negative, one_of, positive, ruled
@@ -22,6 +23,11 @@ class Params:
     """The session's clock. lockstep: the world waits for its commands; real: it follows the tick."""
     frame_hz: int = ruled(8, "a divisor of 64", lambda value: value > 0 and SUBSTEPS_HZ % value == 0)
     """Camera frames a second. Paper, Table I: Ts = 0.125 s."""
+    begins: str = one_of("start", "start", "goal", "facing", "fingertips")
+    """Where a run begins: at a start, or where a person puts the robot: in the pick-up pose to show the goal; to be
+    checked, 2 m before the object, or with the object before its finger tips and the lift down (`beginning.py`)."""
+    wiring: Wiring = field(default_factory=Wiring)
+    """What is connected wrongly, for `berth check hardware` to find."""
     starts: str = one_of("demo", "demo", "full")
     """Which starts the robot is placed at (`docking.starts`)."""
     starts_seed: int = not_negative(2005)

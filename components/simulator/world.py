@@ -10,6 +10,7 @@ from components.simulator.base import Base, Pose
 from components.simulator.gripper import Gripper
 from components.simulator.head import Head
 from components.simulator.params import SUBSTEPS_HZ, Params
+from components.simulator.past import Moment, Past
 from docking import plant
 from docking.pinhole import Array, Camera, Mount
 from docking.starts import Start
@@ -31,6 +32,9 @@ class World:
         self.odometry = Pose(0.0, 0.0, 0.0)
         self.odometry_scale = (1.0, 1.0)
         self.collided = False
+        self.past = Past(params.wiring, SUBSTEPS_HZ)
+        if params.begins == "fingertips":
+            self.gripper.begin_lowered()
 
     def place(self, start: Start) -> None:
         """Carry the robot to a start: at rest, gripper raised and open, object on the table, head on the object.
@@ -54,6 +58,13 @@ class World:
         self.time_ns += SUBSTEP_NS
         self.head.step(self.time_ns, SUBSTEP_S)
         self.gripper.step(*self.object_from_gripper, SUBSTEP_S)
+        if self.past.is_kept:
+            self.past.add(self.moment)
+
+    @property
+    def moment(self) -> Moment:
+        """The world as it is now, for what sees it later."""
+        return Moment(self.time_ns, *self.head.angles_rad, self.camera, self.object_m, self.image_motion_pxps)
 
     @property
     def object_from_gripper(self) -> tuple[float, float]:
