@@ -12,6 +12,18 @@ READY_TIMEOUT_S = 120.0
 
 
 @dataclass(frozen=True)
+class Kept:
+    """A snapshot of a component, kept for its next start."""
+
+    file: str
+    """Holds the message."""
+    run: int
+    """Run id of the component then."""
+    sequence: int
+    """Of the message among that run's snapshots."""
+
+
+@dataclass(frozen=True)
 class Assignment:
     """One component of a system, to be run as a process."""
 
@@ -29,6 +41,8 @@ class Assignment:
     restarts: int = 0
     """How often this component was started again."""
     ready_timeout_s: float = READY_TIMEOUT_S
+    snapshot: Kept | None = None
+    """Where it shall go on; None = it starts cold."""
 
     def to_json(self) -> str:
         """One line of text from which `from_json` makes the same assignment."""
@@ -41,4 +55,5 @@ class Assignment:
         table = json.loads(text)
         table["system"] = System.from_json(table["system"])
         table["peers"] = tuple(table["peers"])
+        table["snapshot"] = Kept(**table["snapshot"]) if table["snapshot"] else None
         return Assignment(**table)

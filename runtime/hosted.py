@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from google.protobuf.message import DecodeError
+
 from runtime.contract import ComponentError, Event, Output, Port
 from runtime.system import ComponentSpec, class_of, params_of
-from schemas.session_pb2 import Journal
+from schemas.session_pb2 import Journal, Snapshot
 
 
 class Sample(NamedTuple):
@@ -55,6 +57,20 @@ class Hosted:
         """
         self.handled += 1
         return [self._stamped(output, event.capture_ns) for output in self.component.handle(event)]
+
+    def load(self, payload: bytes) -> None:
+        """Go on where a snapshot was taken.
+
+        Args:
+            payload: a `Snapshot` of a former run.
+
+        Raises:
+            ValueError: it is none of this component with these parameters; nothing has changed.
+        """
+        try:
+            self.component.load(Snapshot.FromString(payload).state)
+        except (AttributeError, DecodeError) as error:
+            raise ValueError(str(error) or "it is damaged") from None
 
     def journal(self, batch: Journal, time_ns: int) -> Sample:
         """A batch of the journal, stamped; it has a sequence of its own."""

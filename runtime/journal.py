@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from schemas.session_pb2 import Journal
 
+LOADED = "loaded"
+"""Port of an entry that is no event: the run went on from a snapshot, whose run and sequence stand there."""
 BATCH_EVENTS = 256
 BATCH_NS = 100_000_000
 

@@ -21,6 +21,7 @@ from runtime.wiring import publishers
 from schemas.session_pb2 import Hold
 
 HOLD_KEY = "supervisor/hold"
+_SNAPSHOT = "berth.Snapshot"
 _FUTURE_NS = SECOND_NS
 """Real time: a capture time further ahead than this is a lie."""
 _IDLE_NS = SECOND_NS // 20
@@ -275,6 +276,8 @@ class Fold:
         for sample in self._hosted.handle(event):
             if self._pacer is not None and sample.capture_ns > event.time_ns:
                 self._wait(self._pacer.wait_ns(sample.capture_ns, time.monotonic_ns()))
+            if sample.schema == _SNAPSHOT:
+                self._flush_journal()  # whoever goes on from it can be replayed, though this process is killed now
             outlet = self._outlets[sample.key]
             if self._device is not None and outlet is self._station.outlets.ports.get(ACTUATE):
                 self._device.write(outlet.schema.FromString(sample.payload))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from runtime.comparison import Comparison, Difference
-from runtime.contract import Port
+from runtime.contract import DEVICE, Port
 from runtime.fingerprint import fingerprint
 from runtime.hosted import Sample
 from runtime.mcap_items import Fault
@@ -18,6 +18,10 @@ from runtime.recording import Logged, Recording
 from runtime.rerun import Outcome, Rerun
 from runtime.system import ComponentSpec, ports_of
 from runtime.window import Window
+
+_SNAPSHOT = "berth.Snapshot"
+_SNAPSHOTS_KEPT = 4
+"""A supervisor keeps the newest one that it has heard; the one or two after it may not have reached it."""
 
 
 @dataclass
@@ -118,8 +122,10 @@ class _Replay:
         self._readers: dict[str, list[Window]] = {}
         for port, key in wired.items():
             self._readers.setdefault(key, []).append(self._windows[port])
-        self._outputs = frozenset(spec.outputs.values()) if compare else frozenset()
+        said = {key for port, key in spec.outputs.items() if port != DEVICE}  # that is what its device read
+        self._outputs = frozenset(said) if compare else frozenset()
         self._comparisons: dict[int, Comparison] = {}
+        self._snapshots: dict[tuple[int, int], bytes] = {}
         self._rerun: Rerun | None = None
         self._done: set[int] = set()
 
@@ -146,22 +152,25 @@ class _Replay:
         self._rerun.read(logged.payload)
 
     def _begin(self, run: int) -> Rerun:
-        if self._report.runs:
-            self._report.notes.append(
-                f"{self._spec.name} was started again (run {run:016x}); its state then is not in the journal: replayed "
-                "as from a cold start"
-            )
         comparison = self._comparison(run)
 
         def say(sample: Sample) -> None:
             comparison.say(sample)
+            self._keep(sample)
             if self._tell is not None:
                 self._tell(sample, rerun.outcome.until_ns)
 
-        rerun = Rerun(self._spec, run, str(self._recording.file), self._windows, say)
+        rerun = Rerun(self._spec, run, str(self._recording.file), self._windows, self._snapshots, say)
         self._report.runs.append(rerun.outcome)
         self._report.comparisons.append(comparison)
         return rerun
+
+    def _keep(self, sample: Sample) -> None:
+        """Of the snapshots said, the newest: a later run may have gone on from one of them."""
+        if sample.schema == _SNAPSHOT:
+            self._snapshots[sample.run, sample.sequence] = sample.payload
+            if len(self._snapshots) > _SNAPSHOTS_KEPT:
+                del self._snapshots[next(iter(self._snapshots))]
 
     def _record(self, logged: Logged) -> None:
         if logged.run not in self._done:
@@ -177,6 +186,9 @@ class _Replay:
         if self._rerun is None:
             return
         outcome = self._rerun.finish()
+        if len(self._report.runs) > 1:
+            how = "went on from a snapshot" if outcome.went_on else "is replayed as from a cold start"
+            self._report.notes.append(f"{self._spec.name} was started again: run {outcome.run:016x} {how}")
         self._comparisons.pop(outcome.run).finish(to_the_end=outcome.ended)
         self._done.add(outcome.run)
         self._rerun = None

@@ -11,7 +11,7 @@ from google.protobuf.message import DecodeError
 
 from runtime.contract import GONE, STOP, Event
 from runtime.hosted import Hosted, Sample
-from runtime.journal import Entry, entries
+from runtime.journal import LOADED, Entry, entries
 from runtime.system import ComponentSpec
 from runtime.window import Window
 from schemas.session_pb2 import Journal
@@ -33,6 +33,8 @@ class Outcome:
     """What the component raised in the replay."""
     outputs: dict[str, int] = field(default_factory=dict)
     """Key -> messages said."""
+    went_on: bool = False
+    """It went on from a snapshot of a former run."""
 
     @property
     def words(self) -> str:
@@ -46,7 +48,13 @@ class Rerun:
     """Feeds a fresh component with what its journal names, as soon as both the entry and its message are there."""
 
     def __init__(
-        self, spec: ComponentSpec, run: int, file: str, windows: Mapping[str, Window], tell: Callable[[Sample], None]
+        self,
+        spec: ComponentSpec,
+        run: int,
+        file: str,
+        windows: Mapping[str, Window],
+        snapshots: Mapping[tuple[int, int], bytes],
+        tell: Callable[[Sample], None],
     ) -> None:
         """Make the component.
 
@@ -55,12 +63,14 @@ class Rerun:
             run: run id in the session.
             file: for error messages.
             windows: input port -> messages received on it, filled by the caller.
+            snapshots: (run id, sequence) -> payload, of what the replay of former runs has said.
             tell: called with each output.
         """
         self.outcome = Outcome(run)
         self._spec = spec
         self._hosted = Hosted(spec, run, file)
         self._windows = windows
+        self._snapshots = snapshots
         self._tell = tell
         self._queue: deque[Entry] = deque()
         self._next = 0
@@ -90,11 +100,30 @@ class Rerun:
     def advance(self) -> None:
         """Hand over the events whose messages are there."""
         while self._queue and not self.is_over:
+            if self._queue[0].port == LOADED:
+                self._go_on()
+                continue
             event = self._event(self._queue[0])
             if event is None:
                 return
             self._queue.popleft()
             self._hand(event)
+
+    def _go_on(self) -> None:
+        """Load the snapshot that the run was given: what the replay of the former run has said, never the log's."""
+        entry = self._queue[0]
+        payload = self._snapshots.get((entry.source_run, entry.source_sequence))
+        if payload is None:
+            former = f"snapshot {entry.source_sequence} of run {entry.source_run:016x}"
+            self._stop(f"it went on from {former}, which the replay of that run has not given again")
+            return
+        try:
+            self._hosted.load(payload)
+        except ValueError as reason:
+            self._stop(f"the snapshot that it went on from can not be loaded: {reason}")
+            return
+        self.outcome.went_on = True
+        self._queue.popleft()
 
     def finish(self) -> Outcome:
         """No message comes any more: what is still awaited is missing."""

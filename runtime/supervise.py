@@ -18,6 +18,7 @@ from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import ALONE, direct, free_endpoint, open_router, ready_key
 from runtime.child import Child
 from runtime.joining import describe
+from runtime.keeper import Keeper
 from runtime.link import Link
 from runtime.live import HOLD_KEY
 from runtime.meeting import Meeting
@@ -89,6 +90,7 @@ class Supervisor:
         self._names = tuple(spec.name for spec in self._specs)
         self._everybody = tuple(spec.name for spec in system.components)
         self._presence = Presence(self._everybody)
+        self._keeper = Keeper(self._presence)
         self._bus_run = new_run()
         self._meeting = Meeting(system, self._bus_run, self._end_everywhere, self._failed)
         self._ends_everywhere = False
@@ -175,6 +177,7 @@ class Supervisor:
         self._resources.callback(lambda: token)  # lives as long as the session
         self._meeting.open(session, Path(self.run.directory) / f"{NAME}.log")
         watch(session, realm, self._presence, lambda *_: None, self._failed)
+        self._keeper.listen(session, realm, self._specs)
         if self._system.end:
             self._watched.setdefault(self._system.end, lambda *_: None)
         for name in self._names:
@@ -225,6 +228,7 @@ class Supervisor:
             started=self.run.started,
             restarts=restarts,
             ready_timeout_s=self._ready_timeout_s,
+            snapshot=self._keeper.kept(spec.name, Path(self.run.directory)) if restarts else None,
         )
         return Child(assignment, Path(self.run.directory) / f"{spec.name}.log")
 

@@ -213,7 +213,7 @@ def test_a_restarted_component_is_replayed_run_by_run_from_a_cold_start(session,
     assert (report.count("identical"), report.differs) == (FRAMES, False)
     assert report.runs[0].words == "the journal ends at 2.375 s, without a stop"
     (note,) = report.notes
-    assert note.startswith("fickle was started again (run 0000000000000009); its state then is not in the journal")
+    assert note == "fickle was started again: run 0000000000000009 is replayed as from a cold start"
 
 
 def journal_of(run, frames, *, stop=False) -> Logged:
