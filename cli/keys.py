@@ -9,8 +9,10 @@ import termios
 import threading
 import tty
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
+GONE = ""
+"""Not a key: the terminal has gone, nobody will press one any more."""
 _SLICE_S = 0.1
 
 
@@ -18,7 +20,7 @@ _SLICE_S = 0.1
 def pressed(call: Callable[[str], None]) -> Iterator[bool]:
     """Call with each key (an arrow is its escape sequence), on a thread of its own; yields whether there is a terminal.
 
-    The terminal is given back as it was.
+    The terminal is given back as it was. When it goes away, the last call is with `GONE`.
     """
     if not sys.stdin.isatty():
         yield False
@@ -34,13 +36,22 @@ def pressed(call: Callable[[str], None]) -> Iterator[bool]:
     finally:
         done.set()
         reader.join(2 * _SLICE_S)
-        termios.tcsetattr(handle, termios.TCSADRAIN, before)
+        with suppress(termios.error):  # it has gone
+            termios.tcsetattr(handle, termios.TCSADRAIN, before)
 
 
 def _read(handle: int, call: Callable[[str], None], done: threading.Event) -> None:
     while not done.is_set():
         if select.select([handle], [], [], _SLICE_S)[0]:
-            data = os.read(handle, 8)
+            data = _typed(handle)
+            call(data.decode(errors="replace") if data else GONE)
             if not data:
                 return
-            call(data.decode(errors="replace"))
+
+
+def _typed(handle: int) -> bytes:
+    """What was typed; empty when the terminal has hung up."""
+    try:
+        return os.read(handle, 8)
+    except OSError:
+        return b""

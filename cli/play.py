@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 
 from cli.in_process import on_signal
-from cli.keys import pressed
+from cli.keys import GONE, pressed
 from cli.picking import EXCLUDE, INCLUDE, TOPICS, selection
 from runtime.answers import Answers, stands
 from runtime.clock import PacedClock
@@ -68,6 +68,8 @@ def play(
     replaced = tuple(name for name in replace.split(",") if name)
     if replaced and loop:
         raise ConfigurationError("--loop must not be given with --replace: the running components can not go back")
+    if paused and not sys.stdin.isatty():
+        sys.stderr.write("paused, and standard input is no terminal: it will not go on, only a signal ends it\n")
     run = find(realm) if replaced else None
     head = Playhead(0.0 if fast else rate, paused=paused)
     playlist = Playlist(
@@ -102,7 +104,9 @@ def _played(opened: AbstractContextManager[Player]) -> tuple[dict[str, object], 
 
 def _run(player: Player) -> str:
     def obey(key: str) -> None:
-        if key in _KEYS:
+        if key == GONE:
+            player.stop("the terminal has gone")
+        elif key in _KEYS:
             player.command(_KEYS[key])
 
     with on_signal(lambda: player.stop("interrupted")), pressed(obey) as terminal:

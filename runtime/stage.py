@@ -90,7 +90,7 @@ def own_stage(playlist: Playlist, realm: str) -> Iterator[Stage]:
     names = tuple(sorted(set(playlist.owners.values())))
     topics = {**playlist.topics, CLOCK_KEY: "berth.Playback"}
     endpoint = free_endpoint()
-    with claim(realm, endpoint, started, str(playlist.file), names, topics) as run, open_router(endpoint) as session:
+    with open_router(endpoint) as session, claim(realm, endpoint, started, str(playlist.file), names, topics) as run:
         system = _as_system(playlist, realm)
         describe(run, Assignment(system, "", names, endpoint, time.monotonic_ns(), started))
         token = session.liveliness().declare_token(ready_key(realm, LISTENS, _SUPERVISOR, new_run()))

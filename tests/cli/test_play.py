@@ -92,6 +92,19 @@ def test_q_ends_it(log):
     os.close(below)
 
 
+def test_it_ends_when_its_terminal_has_gone(log):
+    above, below = pty.openpty()
+    playing = berth("play", log.recording, "-p", "--json", stdin=below)
+    os.close(below)
+    await_realm(f"replay/{log.realm}")
+    clock = Ear(find(f"replay/{log.realm}"), ["player/clock"])
+    clock.start()
+    await_count(clock.rows, 1)  # it has its terminal and plays
+    os.close(above)
+    assert told(playing)["exit_reason"] == "the terminal has gone"
+    clock.finish()
+
+
 def test_a_log_stands_in_for_the_camera_of_a_running_system_in_real_time(log, tmp_path):
     system = recorded_system(tmp_path, clock="real", only=("echo", "recorder"))
     with Supervisor(system) as supervisor:
