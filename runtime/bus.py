@@ -15,6 +15,7 @@ from types import MappingProxyType
 import zenoh
 
 from runtime.foreign_thread import keep_thread_state
+from runtime.lingering import keep_from_lingering
 from runtime.link import Link
 from runtime.params import ConfigurationError
 
@@ -100,6 +101,7 @@ def direct(receive: Callable[[zenoh.Sample], None]) -> zenoh.handlers.Callback[z
 
 def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str, object] = _NOTHING) -> zenoh.Config:
     os.environ.setdefault("ZENOH_RUNTIME", _THREADS)  # read once, when the process opens its first session
+    keep_from_lingering()
     config = zenoh.Config()
     options: dict[str, object] = {
         "mode": mode,
