@@ -13,6 +13,7 @@ from rich.table import Table
 
 from cli.exit_codes import GOOD, LOSSY
 from docking.score import outcomes
+from report.failures import counted
 from report.session import Session, read
 from runtime.mcap_items import Fault
 from runtime.recording import Recording, Topic
@@ -28,7 +29,8 @@ def info(file: FILE, as_json: JSON = False) -> None:
     session, topics = read(file), Recording(file).topics()
     found = numbers(session, topics)
     if as_json:
-        sys.stdout.write(json.dumps({**found, "topics": [vars(topic) for topic in topics]}) + "\n")
+        failed = [failure.table() for failure in session.failed]
+        sys.stdout.write(json.dumps({**found, "failed": failed, "topics": [vars(topic) for topic in topics]}) + "\n")
     else:
         _print(found, topics)
     raise typer.Exit(GOOD if session.whole and not session.lost else LOSSY)
@@ -47,6 +49,8 @@ def numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
         "success_percent": round(100 * succeeded / len(session.trials), 1) if session.trials else None,
         **counts,
         "collisions": session.collisions,
+        "failures": counted(session.failed),
+        **({"shadow": dict(session.shadow)} if session.shadow else {}),
         "messages": session.messages,
         "bytes": session.file.stat().st_size,
         "lost": session.lost,
@@ -69,6 +73,8 @@ def _state(session: Session, topics: list[Topic]) -> str:
 def _print(found: dict[str, object], topics: list[Topic]) -> None:
     console = Console(soft_wrap=True, width=None if sys.stdout.isatty() else _WIDTH)
     for name, value in found.items():
+        if isinstance(value, dict):
+            value = ", ".join(f"{key} {number}" for key, number in value.items() if not isinstance(number, list))  # noqa: PLW2901
         console.print(f"{name:16} {'-' if value is None else value}", highlight=False)
     table = Table("topic", "schema", "run")
     for head in ("messages", "Hz", "bytes", "gaps", "lost"):

@@ -12,6 +12,7 @@ import numpy as np
 from docking.score import Trial, outcomes
 from report import pictures
 from report.comparison import Comparison
+from report.failures import counted
 from report.session import Session, resolved
 
 _STYLE = """
@@ -23,6 +24,9 @@ td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
 p.note{color:#57606a}pre{background:#f6f8fa;padding:.8rem;overflow-x:auto;font-size:12px}
 @media(prefers-color-scheme:dark){body{background:#fff}}@media print{pre{display:none}}
 """
+
+_TIMES = 12
+"""Times shown of failures of one name."""
 
 
 def write(session: Session, file: Path, comparison: Comparison | None = None) -> None:
@@ -44,6 +48,10 @@ def _page(session: Session, comparison: Comparison | None) -> str:
         f"<p class=note>{escape(_summary(session))}</p>",
         *_section("What became of the trials", _table(_outcome_rows(training, evaluation))),
     ]
+    if session.failed:
+        parts += _section("Why trials failed", _failures(session))
+    if session.shadow:
+        parts += _section("In the shadow", _shadow(session))
     if training:
         parts += _section("Training", _img(pictures.learning_curve(training)))
     if comparison is not None:
@@ -62,6 +70,28 @@ def _page(session: Session, comparison: Comparison | None) -> str:
         "<meta name=viewport content='width=device-width,initial-scale=1'>"
         f"<title>{escape(session.file.stem)}</title><style>{_STYLE}</style><body>{''.join(parts)}</body></html>"
     )
+
+
+def _failures(session: Session) -> str:
+    note = "Named by the robot itself, from percepts, odometry and commands; at the session second it rests on."
+    rows = [["", "trials", "when, s"]]
+    for name, count in counted(session.failed).items():
+        times = [f"{failed.at_s:.1f}" for failed in session.failed if failed.name == name]
+        rows.append([name, str(count), ", ".join(times[:_TIMES]) + (", ..." if len(times) > _TIMES else "")])
+    return f"<p class=note>{note}</p>{_table(rows)}"
+
+
+def _shadow(session: Session) -> str:
+    table = session.shadow
+    if not session.beside:
+        return "<p class=note>It never had a word to say while somebody drove.</p>"
+    note = (
+        f"<p class=note>{table['frames']} frames compared; the shadow would have turned alike in "
+        f"{table['agree_percent']} %, and differs by {table['mean_difference_degps']} deg/s on average.</p>"
+    )
+    rows = [["the longest differences", "to, s", "beta, deg", "alpha, deg", "driven, deg/s", "shadow, deg/s"]]
+    rows += [[f"{value:g}" for value in row.values()] for row in table["longest_differences"]]
+    return note + _img(pictures.beside(session.beside)) + _table(rows)
 
 
 def _compared(comparison: Comparison) -> Iterable[str]:

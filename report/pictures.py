@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from docking.score import Trial
+from report.shadow import Beside
 from schemas.policy_pb2 import Policy
 
 mpl.use("Agg")
@@ -131,6 +132,22 @@ def _draw_cells(axes: Axes, policy: Policy, values: Any, colours: Any, limits: t
     axes.set(xlabel="alpha, bearing of the object, deg", ylabel="beta, deg")
     axes.plot(0, 0, "+", color="white", markersize=9)
     return image
+
+
+def beside(frames: Sequence[Beside]) -> bytes:
+    """Where in (beta, alpha) a shadow would have turned as the robot did, and where not."""
+    figure, (axes,) = _figure(5.0, 4.0)
+    for agrees, label, colour in ((True, "alike", COLOURS["docked"]), (False, "otherwise", COLOURS["failed"])):
+        own = [frame for frame in frames if frame.agrees == agrees]
+        across, up = ([math.degrees(angle) for angle in angles] for angles in _angles(own))
+        axes.scatter(across, up, s=6, c=colour, label=f"{label} ({len(own)})")
+    axes.set(xlabel="alpha, deg", ylabel="beta, deg")
+    axes.legend(loc="upper right", frameon=False)
+    return _png(figure)
+
+
+def _angles(frames: Sequence[Beside]) -> tuple[list[float], list[float]]:
+    return [frame.alpha_rad for frame in frames], [frame.beta_rad for frame in frames]
 
 
 def camera_strip(pictures: Mapping[str, bytes]) -> bytes:

@@ -12,8 +12,10 @@ from typing import Any
 from components.pilot.messages import table_of
 from docking.angles import wrap
 from docking.score import Trial
+from report.failures import Endings, Failed
 from report.frames import Scoreboard, is_sane
 from report.pairs import Pairs
+from report.shadow import Beside, ShadowReader
 from runtime.params import ConfigurationError
 from runtime.recording import Logged, Recording
 from schemas.percept_pb2 import Percept
@@ -31,6 +33,12 @@ class Session:
     launch: Mapping[str, Any]
     whole: bool
     trials: list[Trial] = field(default_factory=list)
+    failed: list[Failed] = field(default_factory=list)
+    """Trials that failed, as the pilot names it."""
+    shadow: Mapping[str, Any] = field(default_factory=dict)
+    """How a shadow compares with who drove; empty without one."""
+    beside: list[Beside] = field(default_factory=list)
+    """Frames in which a shadow had a word to say."""
     collisions: int = 0
     robot_s: float = 0.0
     messages: int = 0
@@ -75,6 +83,8 @@ class _Reader:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._board = Scoreboard()
+        self._endings = Endings()
+        self._shadow = ShadowReader(session.launch)
         self._next: dict[tuple[str, int], int] = {}
         self._pairs: Pairs[Percept, Truth] = Pairs()
         self._image: Logged | None = None
@@ -86,6 +96,7 @@ class _Reader:
         """Fill the session."""
         for logged in recording.messages():
             self._count(logged)
+            self._shadow.take(logged)
             if logged.topic in self._keys:
                 self._score(logged)
             elif logged.schema == "foxglove.CompressedImage":
@@ -96,6 +107,11 @@ class _Reader:
                 self._compare(self._pairs.first(logged.capture_ns, percept))
         session, scorer = self._session, self._board.scorer
         session.trials, session.collisions, session.robot_s = scorer.trials, scorer.collisions, self._board.robot_s
+        session.failed, session.shadow, session.beside = (
+            self._endings.failed,
+            self._shadow.table(),
+            self._shadow.frames,
+        )
         images = {mode: logged.decoded() for mode, logged in self._images.items()}
         session.pictures = {mode: image.data for mode, image in images.items() if image is not None}
         policies = [(logged.capture_ns * 1e-9, logged.decoded()) for logged in self._policies.values()]
@@ -113,6 +129,8 @@ class _Reader:
         if message is None or not is_sane(message):
             return
         self._board.take(message, logged.capture_ns)
+        if isinstance(message, TrialMessage):
+            self._endings.take(message, logged.capture_ns)
         if isinstance(message, Truth):
             self._compare(self._pairs.second(logged.capture_ns, message))
         elif self._image is not None:
