@@ -16,6 +16,7 @@ from runtime.handed_over import HandedOver, handed_over
 from runtime.params import ConfigurationError
 from runtime.recorded_system import recorded_component
 from runtime.recording import Recording
+from runtime.replay import replay
 from runtime.system import ComponentSpec, params_of, ports_of
 
 FIGURES = {
@@ -43,8 +44,15 @@ class Lessons:
     """With the recorded parameters, and after that with others if they were asked for."""
 
     lessons: Sequence[Lesson]
-    check: SnapshotCheck
+    checks: Sequence[SnapshotCheck]
+    """Of each session by itself."""
     notes: Sequence[str]
+
+    @property
+    def same(self) -> bool | None:
+        """Whether every session that can be compared gives the live learner's tables; None = none can be compared."""
+        known = [check.same for check in self.checks if check.same is not None]
+        return all(known) if known else None
 
     def policy(self) -> bytes:
         """The last lesson's policy, as a file's contents.
@@ -59,15 +67,15 @@ class Lessons:
 
     def lines(self) -> Iterator[str]:
         """For people."""
-        yield from (*self.notes, self.check.words)
+        yield from self.notes
         yield from _lines(self.lessons)
 
     def table(self) -> dict[str, Any]:
         """As one JSON object."""
         return {
-            "same_as_live": self.check.same,
-            "snapshots": self.check.compared,
-            "notes": [*self.notes, self.check.words],
+            "same_as_live": self.same,
+            "snapshots": sum(check.compared for check in self.checks),
+            "notes": [*self.notes],
             "lessons": [_entry(lesson) for lesson in self.lessons],
         }
 
@@ -92,7 +100,11 @@ def learn(files: Sequence[Path], component: str, overrides: Sequence[str], *, co
     lessons = [_lesson("recorded", specs[0], inputs, compare=compare)]
     if asked != specs[0]:
         lessons.append(_lesson("asked for", asked, inputs, compare=compare))
-    return Lessons(lessons, check_snapshots(sessions, lessons[0].learned), list(_notes(files, specs, sessions)))
+    checks = [
+        _check(recording, spec, session, lessons[0].learned if len(files) == 1 else None)
+        for recording, spec, session in zip(recordings, specs, sessions, strict=True)
+    ]
+    return Lessons(lessons, checks, list(_notes(files, specs, sessions, checks)))
 
 
 def _read(recording: Recording, spec: ComponentSpec) -> HandedOver:
@@ -115,10 +127,40 @@ def _lesson(name: str, spec: ComponentSpec, inputs: Inputs, *, compare: bool) ->
     return Lesson(name, learned, predict(params, trials_of(params, inputs), learned.policy) if compare else None)
 
 
-def _notes(files: Sequence[Path], specs: Sequence[ComponentSpec], sessions: Sequence[HandedOver]) -> Iterator[str]:
-    for file, spec, session in zip(files, specs, sessions, strict=True):
+def _check(recording: Recording, spec: ComponentSpec, session: HandedOver, learned: Learned | None) -> SnapshotCheck:
+    """Whether a session gives again what its learner has learned live, with its own parameters and by itself.
+
+    Args:
+        recording: the session.
+        spec: of its learner.
+        session: what was read of it.
+        learned: from it alone; None = from others too, so it is learned from once more.
+    """
+    if session.restarted:
+        return _check_run_by_run(recording, spec)
+    if learned is None and session.others:
+        learned = relearn(params_of(spec), spec.seed, inputs_of([session], _decoder(spec)))
+    return check_snapshots(session, learned or Learned())
+
+
+def _check_run_by_run(recording: Recording, spec: ComponentSpec) -> SnapshotCheck:
+    """Of a learner that was started again and lost a part: each of its runs is replayed."""
+    report = replay(recording, spec.name)
+    same = False if report.differs else True if report.count("identical") else None
+    ends = "".join(f"; {outcome.words}" for outcome in report.runs if outcome.stopped)
+    found = f"{report.count('different')} of its outputs differ" if report.differs else "its outputs are the same"
+    return SnapshotCheck(same, 0, f"started again, so compared run by run: {found}{ends}")
+
+
+def _notes(
+    files: Sequence[Path],
+    specs: Sequence[ComponentSpec],
+    sessions: Sequence[HandedOver],
+    checks: Sequence[SnapshotCheck],
+) -> Iterator[str]:
+    for file, spec, session, check in zip(files, specs, sessions, checks, strict=True):
         other = "" if spec.params == specs[0].params else "; recorded with other parameters than the first one"
-        yield f"{file}: {len(session.inputs)} messages in the order of the {session.order}{other}"
+        yield f"{file}: {len(session.inputs)} messages in the order of the {session.order}{other}; {check.words}"
 
 
 def _lines(lessons: Sequence[Lesson]) -> Iterator[str]:

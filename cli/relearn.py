@@ -48,7 +48,7 @@ def relearn(
         sys.stdout.write(json.dumps({"wall_s": round(time.monotonic() - began_s, 3), **report.table()}) + "\n")
     else:
         sys.stdout.write("".join(f"{line}\n" for line in report.lines()))
-    raise typer.Exit(DIFFERENT if report.check.same is False else GOOD)
+    raise typer.Exit(DIFFERENT if report.same is False else GOOD)
 
 
 def _write(output: Path, policy: bytes) -> None:

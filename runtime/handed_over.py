@@ -13,6 +13,8 @@ from runtime.system import ComponentSpec
 from runtime.window import SEQUENCE_MASK
 from schemas.session_pb2 import Journal
 
+JOURNAL_ORDER = "journal"
+
 
 @dataclass
 class HandedOver:
@@ -22,7 +24,7 @@ class HandedOver:
     """(input port, message)."""
     others: list[Logged] = field(default_factory=list)
     """Messages of the further topics that were asked for."""
-    order: str = "journal"
+    order: str = JOURNAL_ORDER
     """`journal`, or why the order of the file had to do."""
     restarted: bool = False
     """The component was started again within the session."""

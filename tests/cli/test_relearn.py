@@ -4,13 +4,16 @@ import json
 
 import pytest
 
-from cli.lessons import learn
+from cli.lessons import _check, learn
 from cli.relearn import relearn
 from docking.policy import PolicyTable
+from runtime.handed_over import HandedOver
 from runtime.launch import load
 from runtime.params import ConfigurationError
+from runtime.recorded_system import recorded_component
 from runtime.recording import Recording
 from runtime.system import params_of
+from schemas.session_pb2 import Snapshot
 from tests.cli.test_replay import berth
 from tests.recorded_session import LAUNCH
 from tests.runtime.offline import rewritten, small_session, without
@@ -37,8 +40,8 @@ def live_digests(session) -> list[bytes]:
 
 def test_the_same_parameters_give_the_live_learner_s_tables(session):
     report = learn([session], "learner", (), compare=False)
-    assert report.check.same is True
-    assert report.check.words.endswith("same hash")
+    assert report.same is True
+    assert report.checks[0].words.endswith("same hash")
     assert [digest for _, digest in report.lessons[0].learned.snapshots] == live_digests(session)
     assert "in the order of the journal" in report.notes[0]
 
@@ -47,7 +50,7 @@ def test_a_file_without_any_learner_channel_gives_the_same_table(session, stripp
     report = learn([stripped], "learner", (), compare=False)
     policy = report.lessons[0].learned.policy
     assert policy.table_sha256 == live_digests(session)[-1]
-    assert report.check.same is None
+    assert report.same is None
     assert "in the order of the file (no journal)" in report.notes[0]
 
 
@@ -58,17 +61,53 @@ def test_the_last_policy_is_the_one_that_the_live_learner_published(session):
     assert learned.action.tobytes() == last.decoded().action
 
 
-def test_a_wrong_table_in_the_file_is_noticed(session, tmp_path):
+@pytest.fixture(scope="module")
+def forged(session, tmp_path_factory):
+    """A learner that claims to have learned something else."""
+
     def forge(topic, message):
         if topic != "learner/snapshot":
             return message
-        snapshot = type(next(Recording(session).messages([topic])).decoded()).FromString(message.payload)
+        snapshot = Snapshot.FromString(message.payload)
         snapshot.table_sha256 = bytes(32)
         return message._replace(payload=snapshot.SerializeToString())
 
-    code, output = berth(relearn, rewritten(session, tmp_path / "forged.mcap", forge), "--no-comparison")
+    return rewritten(session, tmp_path_factory.mktemp("forged") / "forged.mcap", forge)
+
+
+def test_a_wrong_table_in_the_file_is_noticed(forged):
+    code, output = berth(relearn, forged, "--no-comparison")
     assert code == 1
     assert "snapshot 1 of 1: another hash than live" in output
+
+
+def test_of_several_sessions_each_is_checked_by_itself(session, stripped, forged):
+    good = learn([stripped, session], "learner", (), compare=False)
+    assert [check.same for check in good.checks] == [None, True]
+    assert good.same is True
+    assert "no snapshot of the live learner" in good.notes[0]
+    assert "same hash" in good.notes[1]
+    bad = learn([session, forged], "learner", (), compare=False)
+    assert [check.same for check in bad.checks] == [True, False]
+    assert bad.same is False
+
+
+def test_a_session_with_a_hole_is_not_accused_but_said_to_be_open(session, tmp_path):
+    file = rewritten(session, tmp_path / "hole.mcap", without("tracker/percept", sequences=range(100, 140)))
+    report = learn([file], "learner", (), compare=False)
+    assert report.same is None
+    assert "message 100 on percept is missing" in report.notes[0]
+    assert "another hash than live, at policy version" in report.notes[0]
+    assert "but the live learner's order is not known" in report.notes[0]
+
+
+def test_a_learner_that_was_started_again_is_checked_run_by_run(session, forged):
+    for file, same, words in ((session, True, "its outputs are the same"), (forged, False, "1 of its outputs differ")):
+        spec = recorded_component(Recording(file), "learner")[1]
+        restarted = HandedOver(restarted=True)
+        check = _check(Recording(file), spec, restarted, None)
+        assert check.same is same
+        assert check.words == f"started again, so compared run by run: {words}"
 
 
 def test_two_sessions_in_turn_teach_as_much_as_both(session):
