@@ -23,7 +23,7 @@ from docking.task_file import task_text
 from runtime.launch import load
 from runtime.lockstep import Lockstep
 
-STARTS = 500
+STARTS, FLOOR_STARTS = 500, 100
 TUNED = (1.75, 1.0)
 """Gains of the linear law that dock from most starts, camera on the axis (`python -m benchmarks evaluation`)."""
 ASIDE = ("simulator.camera_left_m=0.05", f"simulator.camera_yaw_rad={3 * DEG}")
@@ -47,6 +47,9 @@ def figures() -> list[Figure]:
         file = Path(folder) / "aside.toml"
         file.write_text(task_text(goal, shown), encoding="utf-8")
         aside = (*ASIDE, f"task={file}")
+        untaught = linear(ASIDE, FLOOR_STARTS)
+        docked = 100 * sum(trial.docked for trial in untaught) / len(untaught)
+        found.append(Figure("linear law, camera aside, goal not taught: docked", docked, "%", note="the floor"))
         for name, own in (("linear law, tuned", linear), ("learned in 40 minutes", learned)):
             found += compared(name, own(()), own(aside))
     return found

@@ -28,6 +28,7 @@ VERBS: dict[str, str] = {
     "doctor": "cli.doctor:doctor",
     "recover": "cli.recover:recover",
     "report": "cli.report:report",
+    "goal": "cli.goal:goal",
     "view": "cli.view:view",
     "experiment": "cli.experiment:experiment",
     "graph": "cli.graph:graph",

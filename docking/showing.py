@@ -88,7 +88,7 @@ class Showing:
                     f"it spreads by {spread:.3g} over {self.seen} frames"
                 )
 
-    def task(self, base: Task) -> Task:
+    def task(self, base: Task, heading_rad: float | None = None) -> Task:
         """A task with this goal.
 
         The tilts that stand for distances keep their ratio to the distance of the goal, so that a camera at another
@@ -96,11 +96,13 @@ class Showing:
 
         Args:
             base: the other fields, and the tilts to go by.
+            heading_rad: of the robot against the table's normal in the pick-up pose; None = as in `base`.
 
         Raises:
             ConfigurationError: the goal is none that a task can have.
         """
         goal = {f"goal_{name}": value for name, value in self.mean._asdict().items()}
+        goal["goal_heading_rad"] = base.goal_heading_rad if heading_rad is None else heading_rad
         taught = build(Task, {**asdict(base), **goal, "tilt_limit_rad": 1.57}, "goal")
         ratio = math.tan(taught.arrival_tilt_rad) / math.tan(base.arrival_tilt_rad)
         tilts = {
