@@ -57,8 +57,13 @@ def figures() -> list[Figure]:
 
 def linear(overrides: Sequence[str], count: int = STARTS) -> list[Trial]:
     """Trials of the tuned linear law."""
-    law = (f"pilot.k_beta_per_s={TUNED[0]}", f"pilot.k_alpha_per_s={TUNED[1]}")
-    return evaluate(("pilot.evaluation_controller=lc", *law, *overrides), 0, count)
+    return evaluate((*linear_law(), *overrides), 0, count)
+
+
+def linear_law() -> tuple[str, ...]:
+    """Overrides with which the tuned linear law drives the evaluation."""
+    gains = (f"pilot.k_beta_per_s={TUNED[0]}", f"pilot.k_alpha_per_s={TUNED[1]}")
+    return ("pilot.evaluation_controller=lc", *gains)
 
 
 def learned(overrides: Sequence[str]) -> list[Trial]:
