@@ -30,8 +30,9 @@ class Decision(NamedTuple):
 class Arbiter:
     """Joins the answers of several commanders to one frame.
 
-    Commanders that answer every frame are waited for; of the others the newest word counts. A frame is decided once,
-    and no older one after it.
+    Commanders that answer every frame are waited for; of the others the newest word counts. One of those who had the
+    robot and fell silent keeps it, at rest, until he gives it back: a person's robot never drives off by itself.
+    A frame is decided once, and no older one after it.
     """
 
     def __init__(self, priority: tuple[str, ...], awaited: tuple[str, ...], max_age_ns: int) -> None:
@@ -74,6 +75,8 @@ class Arbiter:
                 continue
             if wish.engaged and time_ns - wish.capture_ns <= self._max_age_ns:
                 return self._decided(capture_ns, Decision(commander, wish.motion, wish.capture_ns))
+            if wish.engaged and not self.is_awaited(commander):
+                return self._decided(capture_ns, Decision(STALE, STILL, capture_ns))
             stale = stale or wish.engaged
         return self._decided(capture_ns, Decision(STALE if stale else NOBODY, STILL, capture_ns))
 

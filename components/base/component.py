@@ -7,8 +7,10 @@ from typing import Any, cast
 
 from components.base import ports
 from components.base.arbiter import NOBODY, Arbiter, Wish
+from components.base.backing import Reading
 from components.base.drive import GONE, STOPPED, Drive
 from components.base.motion import NS, STILL, Motion, is_sane
+from components.base.polarity import beams_read, odometry_read, wired
 from runtime import contract
 from runtime.contract import Event, Output
 from schemas import drive_pb2
@@ -60,6 +62,8 @@ class Base:
             return ()
         wish = Wish(bool(event.message.engaged), self._motion(event.message), event.capture_ns)
         self._arbiter.hear(event.port, wish, event.time_ns)
+        if event.port == "teleop" and event.capture_ns >= self._drive.dead_man_ns:
+            self._drive.dead_man_ns = event.capture_ns if event.message.dead_man else -1
         if self._arbiter.is_awaited(event.port):
             return self._decide(event.capture_ns, event.time_ns, wait=True)
         return self._free(event.port, event.time_ns)
@@ -73,7 +77,7 @@ class Base:
 
     def _decide(self, capture_ns: int, time_ns: int, *, wait: bool) -> tuple[Output, ...]:
         decision = self._arbiter.decide(capture_ns, time_ns, wait=wait)
-        return () if decision is None else _said(*self._drive.apply(decision), capture_ns)
+        return () if decision is None else self._said(*self._drive.apply(decision, time_ns), capture_ns)
 
     def _free(self, commander: str, time_ns: int) -> tuple[Output, ...]:
         """A person's command, and the end of it, counts at once; in lockstep it waits for the next frame."""
@@ -81,7 +85,7 @@ class Base:
             return ()
         decision = self._arbiter.free(commander, time_ns)
         if decision is not None:
-            return _said(*self._drive.apply(decision), decision.capture_ns)
+            return self._said(*self._drive.apply(decision, time_ns), decision.capture_ns)
         return self._halt(NOBODY, time_ns) if self._drive.commander == commander else ()
 
     def _tick(self, time_ns: int) -> tuple[Output, ...]:
@@ -101,7 +105,7 @@ class Base:
         return self._halt(GONE, time_ns)
 
     def _halt(self, reason: str, time_ns: int) -> tuple[Output, ...]:
-        return _said(*self._drive.stop(reason), time_ns)
+        return self._said(*self._drive.stop(reason), time_ns)
 
     def _device(self, reading: BaseState, capture_ns: int) -> tuple[Output, ...]:
         if capture_ns <= self._state_ns:
@@ -109,20 +113,30 @@ class Base:
         self._state_ns = capture_ns
         state = BaseState()
         state.CopyFrom(reading)
-        if not all(math.isfinite(getattr(reading, name)) for name in _NUMBERS):
+        numbers = odometry_read(tuple(getattr(reading, name) for name in _NUMBERS), self._params)
+        if not all(map(math.isfinite, numbers)):
             self.refused += 1
-            for name in _NUMBERS:
-                setattr(state, name, getattr(self._state, name))
+            numbers = tuple(getattr(self._state, name) for name in _NUMBERS)
+        for name, number in zip(_NUMBERS, numbers, strict=True):
+            setattr(state, name, number)
+        state.inner_beam, state.outer_beam = beams_read(reading.inner_beam, reading.outer_beam, self._params)
         self._state = state
         self._drive.bumper, self._drive.guard = state.bumper, state.guard
+        self._drive.backing.see(_reading(state, capture_ns))
         return (Output("state", state),)
 
+    def _said(self, commander: str, motion: Motion, capture_ns: int) -> tuple[Output, ...]:
+        """The command to the device and what everyone may know of it."""
+        v, omega = wired(motion, self._params)
+        action = cast("GripperAction", motion.gripper)
+        command = BaseCommand(v_mps=v, omega_radps=omega, gripper=action)
+        command.lift_reversed, command.fingers_reversed = self._params.lift_reversed, self._params.fingers_reversed
+        applied = Applied(v_mps=motion.v_mps, omega_radps=motion.omega_radps, commander=commander, gripper=action)
+        return Output("actuate", command, capture_ns), Output("applied", applied, capture_ns)
 
-def _said(commander: str, motion: Motion, capture_ns: int) -> tuple[Output, ...]:
-    """The command to the device and what everyone may know of it."""
-    v, omega, gripper = motion
-    action = cast("GripperAction", gripper)
-    return (
-        Output("actuate", BaseCommand(v_mps=v, omega_radps=omega, gripper=action), capture_ns),
-        Output("applied", Applied(v_mps=v, omega_radps=omega, commander=commander, gripper=action), capture_ns),
-    )
+
+def _reading(state: BaseState, capture_ns: int) -> Reading:
+    """What backing up needs to know."""
+    range_m = state.rear_range_m if state.HasField("rear_range_m") else None
+    pose = (state.odometry_x_m, state.odometry_y_m, state.odometry_heading_rad)
+    return Reading(capture_ns, *pose, range_m, state.rear_bumper)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from docking.angles import DEG
 from runtime.contract import Input, Kind, Peers, Port, Tick
-from runtime.params import between, one_of, positive
+from runtime.params import between, one_of, positive, scale
 from schemas.drive_pb2 import Applied, BaseCommand, BaseState, Drive
 
 
@@ -33,6 +33,34 @@ class Params:
     """Of the command, from frame to frame; slowing down is not limited. The device's own limit is lower."""
     max_turn_acceleration_radps2: float = positive(2.0)
     """As above: a learner's full turn from rest in one frame."""
+    speed_scale: float = scale()
+    """What the device is told for 1 m/s forwards; -1 = its motors run the other way. `berth check hardware` tells."""
+    turn_scale: float = scale()
+    """What the device is told for 1 rad/s to the left."""
+    odometry_scale: float = scale()
+    """Metres forwards for 1 of the device's."""
+    heading_scale: float = scale()
+    """Radians to the left for 1 of the device's."""
+    lift_reversed: bool = False
+    """The lift's motor runs the other way round; the device is told so with each command."""
+    fingers_reversed: bool = False
+    """As above, for the fingers."""
+    beams_swapped: bool = False
+    """The device's inner break beam is the outer one."""
+    inner_beam_inverted: bool = False
+    """The device's inner beam reads true while it is whole."""
+    outer_beam_inverted: bool = False
+    """As above, for the device's outer one."""
+    rear_stop_m: float = positive(0.35)
+    """No way back with less than this behind the robot. It needs 0.24 m to stop from 0.3 m/s, and a frame to hear of
+    it; of a robot without a sensor behind nothing is known."""
+    max_reverse_m: float = positive(3.0)
+    """Longest way backwards by odometry, until the robot drives forwards again. In 20 simulated minutes: 2.4 m."""
+    fence_m: float = positive(4.0)
+    """No way back further than this from where the session began, by odometry; make it your room's. In 20 simulated
+    minutes: 2.5 m, with 0.1 m of drift."""
+    dead_man: str = one_of("never", "never", "reverse", "always")
+    """Which motion needs a person who holds the dead-man key, whoever commands; for first runs `reverse`, `always`."""
     stop_when_gone: tuple[str, ...] = ()
     """Components whose death stops the robot, until a frame captured after it is answered."""
 

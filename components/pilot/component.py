@@ -27,8 +27,16 @@ from schemas.session_pb2 import SessionEnd
 from schemas.trial_pb2 import Trial
 
 _NUMBERS = ("v_mps", "omega_radps", "odometry_x_m", "odometry_y_m", "odometry_heading_rad")
-_STALE = "stale"
-"""Base's word for a command that was too old to move the robot."""
+_PERSON = "teleop"
+"""The commander of base that is a person."""
+_HEARD = {
+    "stale": "late_ns",
+    "rear": "hindered_ns",
+    "rear-bumper": "hindered_ns",
+    "reverse": "hindered_ns",
+    "fence": "hindered_ns",
+}
+"""Base's words for why the robot was not moved -> what is remembered of it."""
 
 
 class Pilot:
@@ -124,8 +132,9 @@ class Pilot:
             self._heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, **numbers)
 
     def _hear_applied(self, applied: Applied, capture_ns: int) -> None:
-        if applied.commander == _STALE and capture_ns > self._heard.late_ns:
-            self._heard = replace(self._heard, late_ns=capture_ns)
+        field = "led_ns" if applied.commander == _PERSON and applied.v_mps > 0.0 else _HEARD.get(applied.commander)
+        if field is not None and capture_ns > getattr(self._heard, field):
+            self._heard = replace(self._heard, **{field: capture_ns})
 
     def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
         heard = self._heard

@@ -100,6 +100,9 @@ class Params:
     """A start's bearing is met within this."""
     reverse_timeout_s: float = positive(40.0)
     """After this a trial begins where the robot is, or another start is drawn."""
+    search_turn_rate_radps: float = positive(15 * DEG)
+    """With the object out of view for `lost_s` after a trial, the robot turns once round, if it stands clear of the
+    table; not found, a trial ends as lost."""
     blame_s: float = positive(3.0)
     """A late command or a slip longer than this before a trial's end is not its cause."""
     lock_s: float = positive(2.0)

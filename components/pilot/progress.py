@@ -96,6 +96,10 @@ class Heard:
     odometry_heading_rad: float = 0.0
     late_ns: int = -1
     """Newest frame in which base let a command go for its age."""
+    hindered_ns: int = -1
+    """Newest frame in which base refused to drive further back."""
+    led_ns: int = -1
+    """Newest frame in which a person drove the robot forwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +139,12 @@ class Progress:
     """Where the reverse shall end."""
     turning: bool = False
     """The reverse has gone back far enough and turns on the spot."""
+    seen_alpha_rad: float = 0.0
+    """Bearing of the object when the reverse saw it last."""
+    seen_tilt_rad: float = 1.57
+    """As above; before that the robot may stand at the table."""
+    searched: bool = False
+    """The robot has turned once round in search of the object, in vain."""
     evidence: Evidence = field(default_factory=Evidence)
     scale: Scale = field(default_factory=Scale)
 

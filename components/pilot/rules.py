@@ -13,8 +13,8 @@ from docking.linear import Linear
 from docking.policy import PolicyTable
 from docking.task import Task
 
-_ORDER_STREAM = 7
-"""Tag of the generator of the order within pairs."""
+_ORDER_STREAM, _START_STREAM = 7, 8
+"""Tags of the generators of a comparison's order within pairs, and of its starts."""
 NS = 1_000_000_000
 """Nanoseconds in a second."""
 
@@ -66,6 +66,12 @@ class Rules:
     def start_of(self, number: int) -> int:
         """Number of an evaluation trial's start; the trials of a pair have the same."""
         return self.params.first_start + (number // 2 if self.compares else number)
+
+    def start_generator(self, progress: Progress) -> np.random.Generator:
+        """As `generator`, for where a reverse shall end: in a comparison the trials of a pair begin alike."""
+        if not (self.compares and progress.phase == Phase.EVALUATE):
+            return self.generator(progress)
+        return np.random.default_rng([self.seed, _START_STREAM, (progress.number + 1) // 2, progress.draws])
 
     def generator(self, progress: Progress) -> np.random.Generator:
         """Fresh generator for the next random choice of a trial, the same in a saved and loaded pilot."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
@@ -64,7 +65,7 @@ def go_on(rules: Rules, progress: Progress, frame: Frame) -> Step:
 
 def begin_reverse(rules: Rules, progress: Progress, frame: Frame) -> Progress:
     """Draw a start pose and drive back to it."""
-    start = reverse.drawn_start(rules, rules.generator(progress), frame.sight)
+    start = reverse.drawn_start(rules, rules.start_generator(progress), frame.sight)
     return replace(
         progress,
         mode=int(Mode.REVERSE),
@@ -149,20 +150,42 @@ def _grasp(rules: Rules, progress: Progress, frame: Frame) -> Step:
 
 
 def _reverse(rules: Rules, progress: Progress, frame: Frame) -> Step:
-    """Drive back, turn, and begin the next trial there; stand still while the object is not in view."""
+    """Drive back, turn, and begin the next trial there; one begins too where a person leads the robot on from afar."""
     sight, start = frame.sight, progress.start
-    late = _since(frame, progress.mode_began_ns) > rules.params.reverse_timeout_s
     if not sight.visible:
-        return (begin_reverse(rules, progress, frame) if late else progress), Wish(controller="reverse")
-    if not progress.turning and reverse.is_far_enough(sight, start):
+        return _search(rules, progress, frame)
+    progress = replace(progress, seen_alpha_rad=sight.alpha_rad, seen_tilt_rad=sight.tilt_rad, searched=False)
+    if not progress.turning and (reverse.is_far_enough(sight, start) or _is_hindered(rules, progress, frame)):
         progress = replace(progress, turning=True)
-    inside = rules.grid.cell(sight.beta_rad, sight.alpha_rad) != SINK
-    if inside and (late or (progress.turning and reverse.has_turned(rules, sight, start))):
+    late = _since(frame, progress.mode_began_ns) > rules.params.reverse_timeout_s
+    there = progress.turning and reverse.has_turned(rules, sight, start)
+    led = frame.heard.led_ns > progress.mode_began_ns and sight.tilt_rad <= rules.task.start_tilt_max_rad
+    if rules.grid.cell(sight.beta_rad, sight.alpha_rad) != SINK and (late or there or led):
         return _wait(rules, begin(progress, frame.time_ns, progress.number + 1), frame)
     if late:
         progress = begin_reverse(rules, progress, frame)
     move = reverse.turn if progress.turning else reverse.back_off
     return progress, move(rules, sight, progress.start)
+
+
+def _is_hindered(rules: Rules, progress: Progress, frame: Frame) -> bool:
+    """Base drives no further back, and there is room to turn."""
+    clear = frame.sight.tilt_rad <= rules.params.reverse_clear_tilt_rad
+    return clear and frame.heard.hindered_ns > progress.mode_began_ns
+
+
+def _search(rules: Rules, progress: Progress, frame: Frame) -> Step:
+    """Leave it to the head, then turn once round, then give the trial up by its name."""
+    params = rules.params
+    unseen_s = _since(frame, progress.seen_ns)
+    if unseen_s <= params.lost_s:
+        return progress, Wish(controller="reverse")
+    clear = progress.seen_tilt_rad <= params.reverse_clear_tilt_rad
+    if clear and not progress.searched and unseen_s <= params.lost_s + 2.0 * math.pi / params.search_turn_rate_radps:
+        return progress, Wish(0.0, math.copysign(params.search_turn_rate_radps, progress.seen_alpha_rad), "search")
+    seen_ns = progress.seen_ns
+    progress = begin(replace(progress, searched=True), frame.time_ns, progress.number + 1)
+    return _ended(replace(progress, seen_ns=seen_ns), Outcome.LOST)
 
 
 def _place(rules: Rules, progress: Progress, frame: Frame) -> Step:

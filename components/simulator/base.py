@@ -1,4 +1,4 @@
-"""The robot's base: a unicycle with latency, acceleration limits, a watchdog of its own and a bumper."""
+"""The robot's base: a unicycle with latency, acceleration limits, a watchdog of its own and two bumpers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from components.simulator.params import Params
 from docking import plant
 
 BUMPER_RELEASE_M = 0.005
-"""The bumper stays pressed until the robot is this far off the table."""
+"""A bumper stays pressed until the robot is this far off table and wall."""
 PENDING = 64
 """Commands that wait for their effect; older ones are dropped."""
 
@@ -55,6 +55,7 @@ class Base:
         self.v_mps = 0.0
         self.omega_radps = 0.0
         self.bumper = False
+        self.rear_bumper = False
         self._pending: deque[tuple[int, Twist]] = deque(maxlen=PENDING)
         self._wish = REST
         self._heard_ns: int | None = None
@@ -75,7 +76,7 @@ class Base:
         """Be there, at rest, with nothing commanded."""
         self.pose = pose
         self.v_mps = self.omega_radps = 0.0
-        self.bumper = False
+        self.bumper = self.rear_bumper = False
         self._pending.clear()
         self._wish = REST
 
@@ -99,16 +100,32 @@ class Base:
         ahead.move(self.v_mps, self.omega_radps, dt_s)
         after_m = self.clearance_m(ahead)
         if after_m < 0.0 and after_m < before_m:
+            self.bumper, self.rear_bumper = self.v_mps >= 0.0, self.v_mps < 0.0
             self.v_mps = 0.0
-            self.bumper = True
             ahead = Pose(*self.pose.triple)
             ahead.move(0.0, self.omega_radps, dt_s)
         elif after_m > BUMPER_RELEASE_M:
-            self.bumper = False
+            self.bumper = self.rear_bumper = False
         self.pose = ahead
 
+    @property
+    def rear_range_m(self) -> float | None:
+        """Free way behind, as the sensor reads it; None = there is no sensor."""
+        reach_m, wall_m = self._params.rear_reach_m, self._params.wall_behind_m
+        if reach_m == 0.0:
+            return None
+        slope = math.cos(self.pose.heading_rad)
+        if wall_m == 0.0 or slope <= 0.0:
+            return reach_m
+        return min(max((self.pose.x_m + wall_m) / slope - self._params.robot_radius_m, 0.0), reach_m)
+
     def clearance_m(self, pose: Pose) -> float:
-        """Gap between the robot's circle and the table's edge; negative inside."""
+        """Gap between the robot's circle and the table's edge or the wall; negative inside."""
+        wall_m = self._params.wall_behind_m
+        table_m = self._from_table_m(pose)
+        return min(table_m, pose.x_m + wall_m - self._params.robot_radius_m) if wall_m > 0.0 else table_m
+
+    def _from_table_m(self, pose: Pose) -> float:
         p = self._params
         beyond_m = max(-p.edge_offset_m - pose.x_m, pose.x_m + p.edge_offset_m - p.table_depth_m)
         aside_m = abs(pose.y_m) - 0.5 * p.table_width_m

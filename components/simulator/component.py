@@ -123,7 +123,7 @@ class Simulator:
         outputs = self._reporter.frame(world, self._frames, self._placing)
         self._frames += 1
         self._gate.open_frame(world.time_ns)
-        world.collided = world.base.bumper
+        world.collided = world.base.bumper or world.base.rear_bumper
         return outputs
 
     def _carry(self, world: World) -> None:

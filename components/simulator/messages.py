@@ -84,6 +84,8 @@ class Reporter:
             lift_up=gripper.up,
             lift_down=gripper.down,
             fingers_closed=gripper.closed,
+            rear_range_m=base.rear_range_m,
+            rear_bumper=base.rear_bumper,
         )
 
     def _truth(self, world: World, placing: Placing) -> Truth:

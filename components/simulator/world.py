@@ -54,7 +54,7 @@ class World:
         self.base.step(self.time_ns, SUBSTEP_S)
         scale_v, scale_omega = self.odometry_scale
         self.odometry.move(scale_v * self.base.v_mps, scale_omega * self.base.omega_radps, SUBSTEP_S)
-        self.collided = self.collided or self.base.bumper
+        self.collided = self.collided or self.base.bumper or self.base.rear_bumper
         self.time_ns += SUBSTEP_NS
         self.head.step(self.time_ns, SUBSTEP_S)
         self.gripper.step(*self.object_from_gripper, SUBSTEP_S)

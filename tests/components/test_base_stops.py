@@ -73,11 +73,14 @@ def test_after_a_stop_a_fresh_frame_moves_the_robot_again():
     assert not ticks(base, 1560, 1780)
 
 
-def test_a_stale_engaged_grasper_does_not_keep_the_pilot_from_the_robot():
-    base = Base(Params(clock="real"), 0)
-    hand(base, "teleop", GO, 100 * MS)
-    hand(base, "pilot", BACK, 1000 * MS, 1010 * MS)
-    assert motion(hand(base, "grasper", IDLE, 1000 * MS, 1010 * MS))[::2] == (-0.1, "pilot")
+def test_a_person_who_falls_silent_keeps_the_robot_at_rest_until_he_gives_it_back():
+    base = Base(REAL, 0)
+    hand(base, "teleop", GO, 1000 * MS)
+    assert motion(hand(base, "pilot", BACK, 1125 * MS)) == (0.1, 0.17, "teleop")
+    for ms in range(1375, 5000, 125):
+        assert motion(hand(base, "pilot", BACK, ms * MS)) == (0.0, 0.0, "stale")
+    hand(base, "teleop", IDLE, 5000 * MS)
+    assert motion(hand(base, "pilot", BACK, 5125 * MS)) == (-0.1, 0.0, "pilot")
 
 
 def test_the_death_of_a_component_that_is_needed_stops_the_robot_at_once():
@@ -163,6 +166,6 @@ def test_whatever_comes_nothing_moves_without_a_fresh_engaged_command_and_no_fra
             assert not guard
             assert not (bumper and tells.v_mps > 0.0)
             assert abs(tells.v_mps) <= 0.3
-        if port in ("grasper", "pilot"):
+        if port in commanders:
             assert said[0].capture_ns not in answered
             answered.add(said[0].capture_ns)

@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 
 from components.pilot import reverse
+from components.pilot.component import Pilot
 from components.pilot.ports import Params
 from components.pilot.progress import Start
 from components.pilot.rules import Rules
 from components.pilot.sight import UNSEEN, Sight
 from docking import plant
+from docking.task import Task
+from schemas.drive_pb2 import Applied
 from schemas.trial_pb2 import Trial
-from tests.components.piloting_world import DEG, HEIGHT_M, drive
+from tests.components.piloting_world import DEG, HEIGHT_M, PERIOD_NS, drive, frame, percept, tell
 
 RULES = Rules.of(Params(), 1)
 
@@ -101,12 +104,87 @@ def test_the_starts_cover_the_ranges_in_about_ten_seconds_each(noise_deg):
     assert np.histogram(d, bins=4, range=(1.0, 2.0))[0].min() >= 0.1 * len(d)
 
 
-def test_with_the_object_out_of_view_the_robot_stands_still_and_goes_on_when_it_is_back():
+def reversing(seconds):
+    """Params and the frame in which a first reverse has gone on for so long."""
     params = Params(controller="lc", train_s=1e9)
     begun = next(s for s in drive(params, 1, (0.2, 0.1, 1.8), 400) if s.trial.mode == Trial.REVERSE)
-    first = begun.time_ns // 125_000_000 + 8
-    seen = list(drive(params, 1, (0.2, 0.1, 1.8), 1200, blind=range(first, first + 480)))
+    return params, begun.time_ns // PERIOD_NS + seconds * 8
+
+
+def test_with_the_object_out_of_view_the_robot_stands_still_and_goes_on_when_it_is_back():
+    params, first = reversing(1)
+    blind = range(first, first + round(params.lost_s * 8))
+    seen = list(drive(params, 1, (0.2, 0.1, 1.8), 800, blind=blind))
     assert seen[first - 1].drive.v_mps < 0.0
-    assert all(s.drive.v_mps == 0.0 == s.drive.omega_radps for s in seen[first : first + 480])
-    assert all(s.trial.mode == Trial.REVERSE for s in seen[first : first + 480])
-    assert seen[-1].trial.number > begun.trial.number
+    assert all(seen[k].drive.v_mps == 0.0 == seen[k].drive.omega_radps for k in blind)
+    assert all(seen[k].trial.mode == Trial.REVERSE for k in blind)
+    assert seen[-1].trial.number > seen[first].trial.number
+
+
+def test_an_object_that_stays_lost_is_searched_for_by_one_turn_on_the_spot_and_then_ends_a_trial_by_name():
+    params, first = reversing(3)
+    seen = list(drive(params, 1, (0.2, 0.1, 1.8), first + 800, blind=range(first, 10_000)))[first:]
+    searching = [s for s in seen if s.trial.controller == "search"]
+    turned = sum(s.drive.omega_radps for s in searching) * 0.125
+    assert abs(turned) == pytest.approx(2 * math.pi, rel=0.02)
+    assert all(s.drive.v_mps == 0.0 for s in seen), "the way is not seen"
+    lost = [s for s in seen if s.trial.outcome == Trial.LOST]
+    assert lost[0].trial.failure == Trial.OBJECT_LOST
+    assert lost[0].trial.number == seen[0].trial.number + 1
+    assert (lost[0].time_ns - seen[0].time_ns) * 1e-9 <= params.lost_s + 2 * math.pi / params.search_turn_rate_radps + 1
+    assert not any(s.drive.omega_radps for s in seen if s.time_ns > lost[0].time_ns), "one search for each loss"
+    assert seen[-1].trial.ended > lost[0].trial.ended, "and so on, at rest, until the training is over"
+
+
+def test_near_the_table_the_robot_does_not_turn_in_search_of_the_object():
+    pilot = Pilot(Params(controller="lc", train_s=1e9), 1)
+    said = [frame(pilot, k, percept(0.0, 0.0, Task().goal_tilt_rad, visible=k < 3))[:2] for k in range(400)]
+    assert said[2][1].mode == Trial.REVERSE
+    assert not any(drive.v_mps or drive.omega_radps for drive, _ in said[3:])
+    assert Trial.LOST in {trial.outcome for _, trial in said}
+
+
+def test_an_object_found_again_in_the_search_is_driven_back_from():
+    params, first = reversing(3)
+    blind = range(first, first + round((params.lost_s + 5) * 8))
+    seen = list(drive(params, 1, (0.2, 0.1, 1.8), first + 600, blind=blind))
+    assert seen[blind[-1]].trial.controller == "search"
+    after = seen[blind[-1] + 1 :]
+    assert Trial.LOST not in {s.trial.outcome for s in after}
+    assert after[-1].trial.number > seen[first].trial.number
+
+
+def hindered(reason, d_m, frames=200):
+    """A pilot in its reverse at a distance, told each frame that base has refused. Returns (drive, trial) per frame."""
+    params = Params(controller="lc", train_s=1e9)
+    pilot = Pilot(params, 1)
+    frame(pilot, 0, percept(0.0, 0.0, Task().goal_tilt_rad))
+    answers = []
+    for k in range(1, frames):
+        tell(pilot, "applied", Applied(commander=reason), k)
+        answers.append(frame(pilot, k, percept(0.1, 0.3, math.atan2(HEIGHT_M, d_m)))[:2])
+    return answers
+
+
+@pytest.mark.parametrize("reason", ["rear", "rear-bumper", "reverse", "fence"])
+def test_where_base_refuses_the_way_back_the_robot_turns_and_the_next_trial_begins_there(reason):
+    assert all(said.v_mps <= 0.0 for said, _ in hindered("pilot", 0.8)[:40])
+    turns = [said for said, trial in hindered(reason, 0.8)[2:40] if trial.mode == Trial.REVERSE]
+    assert turns
+    assert all(said.v_mps == 0.0 for said in turns)
+    assert any(said.omega_radps for said in turns)
+
+
+def test_near_the_table_a_refused_reverse_does_not_turn_on_the_spot():
+    assert all(said.v_mps < 0.0 for said, trial in hindered("rear", 0.4)[2:40] if trial.mode == Trial.REVERSE)
+
+
+def test_a_person_who_drives_forwards_from_afar_begins_a_trial():
+    params = Params(controller="lc", train_s=1e9)
+    for d_m, begins in ((0.5, False), (1.4, True)):
+        pilot = Pilot(params, 1)
+        frame(pilot, 0, percept(0.0, 0.0, Task().goal_tilt_rad))
+        for k in range(1, 5):
+            _, trial, _ = frame(pilot, k, percept(0.4, 0.3, math.atan2(HEIGHT_M, d_m)))
+            tell(pilot, "applied", Applied(v_mps=0.1, commander="teleop"), k)
+        assert (trial.mode == Trial.APPROACH) == begins
