@@ -56,6 +56,7 @@ def test_the_page_needs_nothing_from_elsewhere(page):
 def test_the_page_has_its_sections_and_pictures(page):
     assert headings(page) == [
         "What became of the trials",
+        "Why trials failed",
         "Training",
         "The frozen policy, minute by minute",
         "Paths, from above",
