@@ -47,6 +47,10 @@ class Keeper:
 
         return receive
 
+    def forget(self) -> None:
+        """Whoever is started from now on starts cold."""
+        self._newest.clear()
+
     def kept(self, name: str, directory: Path) -> Kept | None:
         """The newest snapshot of a component, written into a file; None if it has published none.
 

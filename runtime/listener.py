@@ -14,6 +14,7 @@ from runtime.joining import await_links
 from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.runfile import Run
 from runtime.wire import encoding_of_name
+from runtime.wishes import GO_ON, PAUSE, ask
 
 _QUEUE = 8192
 _RUN_IN_S = 0.3
@@ -48,18 +49,22 @@ class Listener:
             self._door.announce(name, number, first=None)  # it has been talking before we came
         await_links(self._session, len({name for _, name, _ in present} - {_SUPERVISOR}))
         watch(self._session, run.realm, self._presence, self._changed, self._failed)
+        # zenoh loses some messages while its routes to a late subscriber settle (seen); where time can be held, none come.
+        paused = block and ask(self._session, run.realm, PAUSE)
         for key in keys:
             self._session.declare_subscriber(f"{run.realm}/{key}", direct(self._door.receive))
         present += self._present(run.realm)  # whoever has answered this knows of our subscriptions
         if any(stage == STARTS and name != _SUPERVISOR for stage, name, _ in present):
             self._run_in()
+        if paused:
+            ask(self._session, run.realm, GO_ON)
 
     def _present(self, realm: str) -> list[tuple[int, str, int]]:
         replies = self._session.liveliness().get(ready_keys(realm), timeout=1.0)
         return [parse_ready_key(str(reply.ok.key_expr)) for reply in replies if reply.ok is not None]
 
     def _run_in(self) -> None:
-        """Forget the first moments: zenoh loses some messages while its routes to a late subscriber settle (seen)."""
+        """Forget the first moments."""
         until_s = time.monotonic() + _RUN_IN_S
         while (left_s := until_s - time.monotonic()) > 0:
             self.take(left_s)

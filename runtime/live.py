@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
 from threading import Lock
@@ -51,7 +52,9 @@ class Fold:
         self._status_due_ns = 0
         self._heard_ns = 0
         self._holders: set[int] = set()
-        """Runs of the supervisors that are restarting a component."""
+        """Runs of the supervisors that hold time: they restart a component, or somebody has asked them to."""
+        self._aside: deque[Arrival] = deque()
+        """What came meanwhile; at most one answer per input and frame."""
         self._foreign: set[str] = set()
         """Input ports that another host publishes; its clock is not ours."""
         system = station.system
@@ -186,10 +189,12 @@ class Fold:
         return not (halted or self._inbox.is_empty)
 
     def _dispatch(self, entry: Arrival | Notice) -> None:
-        if isinstance(entry, Arrival):
-            self._receive(entry)
-        else:
+        if not isinstance(entry, Arrival):
             self._notice(entry)
+        elif self._holders and entry.box.name != HOLD_KEY:
+            self._aside.append(entry)  # time stands still, and the world with it
+        else:
+            self._receive(entry)
 
     def _next_duty_ns(self, now_ns: int) -> int:
         """Monotonic time at which something must be done though nothing is received."""
@@ -249,6 +254,8 @@ class Fold:
     def _hold(self, hold: Hold, run: int) -> None:
         (self._holders.add if hold.active else self._holders.discard)(run)
         self._heard_ns = time.monotonic_ns()
+        while self._aside and not self._holders:
+            self._receive(self._aside.popleft())
 
     def _check_stall(self, now_ns: int) -> None:
         if self._stall_ns is None or now_ns < self._heard_ns + self._stall_ns:

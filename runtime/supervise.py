@@ -31,6 +31,7 @@ from runtime.runfile import Run, claim
 from runtime.system import ComponentSpec, System
 from runtime.tap import known_keys
 from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
+from runtime.wishes import EPOCH, GO_ON, PAUSE, PAUSE_S, Wishes
 from schemas.session_pb2 import Hold, Status
 
 NAME = "supervisor"
@@ -38,6 +39,10 @@ _FOLDS_S, _TAPS_S = 1.2, 0.6
 """Time to stop before SIGKILL: first for the folds, then for the taps, which record the folds' last messages."""
 _OTHERS_S = 1.5
 """After a session's end: how long this host's taps hear what the other hosts still say."""
+_RESET_S = 10.0
+"""Time for the folds to stop before a new epoch; nothing moves meanwhile, so nobody needs to be killed for it."""
+_GUEST = "a guest"
+"""Who asked for a pause, among the names of those for whom time is held."""
 _POLL_S = 0.01
 
 
@@ -100,6 +105,8 @@ class Supervisor:
         self._run: Run | None = None
         self._hold: Outlet | None = None
         self._holding: set[str] = set()
+        self._wishes = Wishes()
+        self._paused_until_s = 0.0
         self._failure: BaseException | None = None
         self._origin_ns = 0
         self.end_reason = ""
@@ -178,6 +185,7 @@ class Supervisor:
         self._meeting.open(session, Path(self.run.directory) / f"{NAME}.log")
         watch(session, realm, self._presence, lambda *_: None, self._failed)
         self._keeper.listen(session, realm, self._specs)
+        self._wishes.listen(session, realm)
         if self._system.end:
             self._watched.setdefault(self._system.end, lambda *_: None)
         for name in self._names:
@@ -252,6 +260,9 @@ class Supervisor:
                 raise self._failure
             for member in self._members:
                 self._look_after(member)
+            self._wishes.grant({PAUSE: self._pause, GO_ON: self._go_on, EPOCH: self._begin_epoch})
+            if _GUEST in self._holding and time.monotonic() >= self._paused_until_s:
+                self._go_on()
             self._meeting.begun |= not set(self._presence.missing(STARTS)) & set(self._names)
             if time.monotonic() >= deadline_s:
                 break
@@ -284,6 +295,30 @@ class Supervisor:
         (self._holding.add if active else self._holding.discard)(name)
         if self._hold is not None:
             self._hold.put(Hold(active=bool(self._holding), component=name), 0)
+
+    def _pause(self) -> str:
+        if self._system.clock != "lockstep":
+            return f"{self._system.realm} runs in real time, which can not be held"
+        self._paused_until_s = time.monotonic() + PAUSE_S
+        self._set_hold(_GUEST, active=True)
+        return ""
+
+    def _go_on(self) -> str:
+        if _GUEST in self._holding:
+            self._set_hold(_GUEST, active=False)
+        return ""
+
+    def _begin_epoch(self) -> str:
+        """Start every fold anew, as if nothing had been before; taps go on."""
+        if self._system.other_hosts:
+            return f"{self._system.realm} runs on several hosts; a new epoch can begin only on one"
+        folds = [member for member in self._members if not member.spec.tap]
+        self._keeper.forget()
+        self._end(folds, _RESET_S)
+        for member in folds:
+            member.due_s = None
+            member.child = self._spawn(member.spec, max(1, member.restarts.count))
+        return ""
 
     def stop(self, reason: str = "stopped") -> None:
         """Stop everything: folds first, then taps; SIGTERM, then SIGKILL. May be called twice."""
