@@ -24,5 +24,6 @@ def first_start(params: Params, seed: int) -> Start:
         return start(params.starts, seed, 0, params.task)
     across, aside, along = np.random.default_rng([seed, 0, BEGINNING_STREAM]).random(3).tolist()
     if params.begins == "facing":
-        tip_m = params.gripper_forward_m + 0.045 + 0.015 * along
+        return Start((2 * across - 1) * 20 * DEG, (2 * aside - 1) * 8 * DEG, 1.85 + 0.3 * along)
+    tip_m = params.gripper_forward_m + 0.045 + 0.015 * along
     return Start((2 * across - 1) * 2 * DEG, (2 * aside - 1) * 1.5 * DEG, tip_m)

@@ -34,6 +34,10 @@ class Params:
     """Time between frames. Martinez-Marin and Duckett 2005, Table I: Ts."""
     head_lag_s: float = between(0.03, 0.0, 0.5)
     """Lag of the head behind a moving target, led by feed_forward."""
+    camera_latency_s: float = between(0.0, 0.0, 0.5)
+    """An image's capture time is this much later than its exposure. `berth tune head` measures it, and the next one."""
+    encoder_latency_s: float = between(0.0, 0.0, 0.5)
+    """The encoders' capture time is this much later than they were read."""
 
     base_latency_s: float = between(0.03, 0.0, 1.0)
     """From `applied` to the base's first reaction."""

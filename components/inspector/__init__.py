@@ -1,0 +1,1 @@
+"""Small motions that tell how a robot is wired: signs, units, beams, latencies."""
