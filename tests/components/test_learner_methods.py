@@ -113,6 +113,16 @@ def test_advantage_learning_of_scale_one_is_q_learning_and_a_smaller_scale_stret
     assert np.abs(np.diff(small.q.reshape(-1, 2))).mean() > 1.5 * np.abs(np.diff(plain.q.reshape(-1, 2))).mean()
 
 
+@pytest.mark.parametrize("scale", [0.1, 0.3, 1.0])
+def test_no_advantage_leaves_the_range_of_the_returns(scale):
+    """With a learning rate of 1 / visits the stretch overshoots at first visits, and more from cell to cell."""
+    chain = [Transition(GOAL - k - 1, 0, GOAL - k, 1.0, 0.0, WIDTH, 1.0) for k in range(3)]
+    method = make_method(TASK, Settings(method="advantage", advantage_scale=scale, mirror=False))
+    for transition in chain * 3:
+        method.observe(transition)
+        assert -10.0 < method.q.min() <= method.q.max() <= 300.0
+
+
 @pytest.mark.parametrize("name", METHODS)
 def test_mirrored_transition_updates_the_mirrored_cell_and_the_policy_is_symmetric(name):
     method = taught(Settings(method=name), random_transitions(150))

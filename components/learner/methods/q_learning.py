@@ -40,8 +40,12 @@ class QLearning(Tabular):
         self.visits[pair] += 1
         after = self.v[self.grid.count if entered == SINK else entered]
         target = self._target(float(self.v[cell]), reward + float(after), periods)
-        self.q[pair] += (target - self.q[pair]) / self.visits[pair]
+        self.q[pair] += self._step() * (target - self.q[pair]) / self.visits[pair]
         self.v[cell] = self._best(cell)
+
+    def _step(self) -> float:
+        """The first visit's learning rate."""
+        return 1.0
 
     def _target(self, value: float, backed_up: float, periods: float) -> float:
         del value, periods
