@@ -54,12 +54,12 @@ def _tap(spec: ComponentSpec, system: System, started: str) -> Tap:
 
 @contextmanager
 def on_signal(call: Callable[[], None]) -> Iterator[None]:
-    """Call once on SIGINT or SIGTERM."""
+    """Call once on SIGINT or SIGTERM, or when the terminal is closed."""
 
     def handler(_number: int, _frame: FrameType | None) -> None:
         call()
 
-    before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     try:
         yield
     finally:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import Any
 
 from cli.in_process import on_signal
 from cli.session import Watch
+from cli.terminal import kept_terminal
 from runtime.bus import ALONE
+from runtime.device import kind_of
 from runtime.link import Link
 from runtime.supervise import Supervisor
-from runtime.system import System
+from runtime.system import System, ports_of
+from schemas.drive_pb2 import Applied
 
 _BACKLOG = 100_000
 """Messages from zenoh's threads that wait for the scoreboard; more than ten minutes of robot time."""
@@ -35,7 +39,8 @@ def run_on_bus(system: System, watch: Watch, duration_s: float | None, link: Lin
     supervisor = Supervisor(system, link=link)
     for key in _watched(system):
         supervisor.watch(key, lambda message, capture_ns: waiting.append((message, capture_ns)))
-    with on_signal(lambda: supervisor.stop_soon("interrupted")), supervisor:
+    watch.usage = "\n".join(kind.usage for spec in system.here if (kind := kind_of(spec)) is not None)
+    with kept_terminal(), on_signal(lambda: supervisor.stop_soon("interrupted")), supervisor:
         _follow(supervisor, watch, waiting, duration_s)
         supervisor.stop()
     _take_all(watch, waiting)
@@ -44,7 +49,19 @@ def run_on_bus(system: System, watch: Watch, duration_s: float | None, link: Lin
 
 def _watched(system: System) -> list[str]:
     acks = [f"{spec.name}/ack" for spec in system.components if spec.tap and "ack" in spec.outputs]
-    return [key for key in (system.trial, system.truth, *acks) if key]
+    # Who drives is of interest to a person who may; in lockstep one more reader of every frame would cost time.
+    drives = [key for key in _keys(system, Applied) if system.clock == "real"]
+    return [key for key in (system.trial, system.truth, *acks, *drives) if key]
+
+
+def _keys(system: System, schema: type[Any]) -> list[str]:
+    """Keys that carry a schema."""
+    return [
+        key
+        for spec in system.components
+        for port, key in spec.outputs.items()
+        if ports_of(spec.run).OUTPUTS[port].schema is schema
+    ]
 
 
 def _follow(supervisor: Supervisor, watch: Watch, waiting: deque[tuple[Any, int]], duration_s: float | None) -> None:
@@ -63,5 +80,9 @@ def _take_all(watch: Watch, waiting: deque[tuple[Any, int]]) -> None:
         message, capture_ns = waiting.popleft()
         if message.DESCRIPTOR.name == "RecorderAck":
             watch.messages, watch.lost = message.messages, message.lost
+        elif message.DESCRIPTOR.name == "Applied":
+            watch.drives = (
+                f"{message.commander}, {message.v_mps:+.2f} m/s, {math.degrees(message.omega_radps):+.0f} deg/s"
+            )
         else:
             watch.take(message, capture_ns)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
@@ -50,7 +51,7 @@ class Progress:
         if self._live is not None:
             self._live.stop()
 
-    def update(self, board: Scoreboard, wall_s: float, messages: int, lost: int, note: str = "") -> None:
+    def update(self, board: Scoreboard, wall_s: float, messages: int, lost: int, more: Mapping[str, str]) -> None:
         """Show the state if it is time to.
 
         Args:
@@ -58,11 +59,11 @@ class Progress:
             wall_s: wall time since the start.
             messages: messages seen on the bus.
             lost: messages lost.
-            note: what is wrong at the moment; empty = nothing.
+            more: further rows; an empty one is left out.
         """
         if self._quiet or wall_s < self._next_s:
             return
-        rows = _rows(board, wall_s, messages, lost) + ([("note", note)] if note else [])
+        rows = _rows(board, wall_s, messages, lost) + [(name, words) for name, words in more.items() if words]
         if self._live is not None:
             self._next_s = wall_s + REFRESH_S
             self._live.update(_panel(self._title, rows), refresh=True)

@@ -14,6 +14,7 @@ from rich.console import Console
 from cli.progress import Progress
 from cli.session import Summary, Watch, now, recording_name
 from runtime.contract import ComponentError
+from runtime.device import check_clock
 from runtime.launch import load
 from runtime.link import Link, checked_link
 from runtime.params import ConfigurationError
@@ -79,6 +80,7 @@ def run(
 
         system = with_shadow(system, shadow)
     check_recording(system)
+    check_clock(system)
     _check_hosts(system, link, in_process=in_process)
     with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
         watch = Watch(progress)

@@ -46,6 +46,10 @@ class Watch:
         self.lost = 0
         self.note = ""
         """What is wrong at the moment, in words."""
+        self.drives = ""
+        """Who has the robot, or why it rests, and how fast it goes; empty where nobody looks."""
+        self.usage = ""
+        """What a person must know to take part."""
         self.over = ""
         """Why the session shall end now; empty as long as it shall not."""
         self._progress = progress
@@ -57,7 +61,8 @@ class Watch:
 
     def show(self) -> None:
         """Refresh the progress if it is time to."""
-        self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost, self.note)
+        more = {"drives": self.drives, "keys": self.usage, "note": self.note}
+        self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost, more)
 
     def summary(self, reason: str, recording: Path | None) -> Summary:
         """The session's numbers. Trials are all; docked and picked are those of the evaluation."""

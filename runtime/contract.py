@@ -99,6 +99,8 @@ class DeviceKind:
     """Frozen dataclass of the rest of the launch file's table."""
     terminal: bool = False
     """Reads the terminal that the session was started in, so its process must be in the foreground with it."""
+    usage: str = ""
+    """What a person must know to use it, shown while the session runs."""
 
 
 class Device(Protocol):

@@ -13,8 +13,8 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from runtime.device import checked_device
 from runtime import shared_task
+from runtime.device import checked_device
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
 from runtime.toml_file import read_toml

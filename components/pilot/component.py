@@ -134,7 +134,8 @@ class Pilot:
     def _hear_applied(self, applied: Applied, capture_ns: int) -> None:
         field = "led_ns" if applied.commander == _PERSON and applied.v_mps > 0.0 else _HEARD.get(applied.commander)
         if field is not None and capture_ns > getattr(self._heard, field):
-            self._heard = replace(self._heard, **{field: capture_ns})
+            newest: dict[str, Any] = {field: capture_ns}
+            self._heard = replace(self._heard, **newest)
 
     def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
         heard = self._heard

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from components.teleop import ports
-from components.teleop.core import Command, Grip, Hand, command, read
-from runtime.contract import TICK, Event, Output
+from components.teleop.core import OPEN, Command, Grip, Hand, command, read
+from runtime.contract import STOP, TICK, Event, Output
 from schemas.drive_pb2 import Drive
 from schemas.teleop_pb2 import Hands
 
@@ -37,7 +39,9 @@ class Teleop:
         if event.port == "device":
             self._grip = read(self._params, self._grip, _hand(event.message), event.capture_ns)
             return self._drive(event.time_ns)
-        return self._drive(event.time_ns) if event.port == TICK else ()
+        if event.port == STOP:
+            self._grip = replace(self._grip, hand=OPEN)
+        return self._drive(event.time_ns) if event.port in {TICK, STOP} else ()
 
     def _drive(self, time_ns: int, *, always: bool = False) -> tuple[Output, ...]:
         now = command(self._params, self._grip, time_ns)

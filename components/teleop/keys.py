@@ -8,10 +8,6 @@ from __future__ import annotations
 
 from components.teleop.core import Hand, Request
 
-HELP = (
-    "q w e / a s d / z c or u i o / j , l or arrows drive while held; k stops; space is the dead-man alone; "
-    "p gives to the pilot, t takes; + - speed"
-)
 _ARCS = {
     (1.0, 1.0): ("q", "u"),
     (1.0, 0.0): ("w", "i", "\x1b[A", "\x1bOA"),

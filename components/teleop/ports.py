@@ -63,9 +63,12 @@ class Gamepad:
     """A pad that says nothing for so long is not held any more: a wireless one may have gone without a word."""
 
 
+KEYS = """q w e / u i o or arrow up: ahead   a d / j l or arrows: turn   z s c / m , . or arrow down: back
+hold to drive; any other key: stop   p: to the pilot   t: take   + -: speed   space: dead-man alone"""
+_KEYBOARD, _GAMEPAD = "components.teleop.devices.keyboard:Terminal", "components.teleop.devices.gamepad:Joystick"
 DEVICES = {
-    "keyboard": DeviceKind("components.teleop.devices.keyboard:Terminal", Keyboard, terminal=True),
-    "gamepad": DeviceKind("components.teleop.devices.gamepad:Joystick", Gamepad),
+    "keyboard": DeviceKind(_KEYBOARD, Keyboard, terminal=True, usage=KEYS),
+    "gamepad": DeviceKind(_GAMEPAD, Gamepad, usage="hold the dead-man button to drive"),
 }
 INPUTS: Mapping[str, Input] = {
     "device": Port(Hands, Kind.STATE),

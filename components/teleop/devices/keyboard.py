@@ -11,7 +11,7 @@ import tty
 from collections import deque
 
 from components.teleop.core import Hand
-from components.teleop.keys import HELP, Keys
+from components.teleop.keys import Keys
 from components.teleop.ports import Keyboard
 from runtime.contract import DeviceError
 from schemas.teleop_pb2 import Hands
@@ -45,7 +45,6 @@ class Terminal:
         except termios.error:
             os.close(self._file)
             raise DeviceError(f"keyboard {params.port} must be a terminal") from None
-        print(HELP, flush=True)  # noqa: T201  (standard output is the component's log)
 
     def read(self, timeout_s: float) -> Hands | None:
         """The next key."""
