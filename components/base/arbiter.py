@@ -35,8 +35,11 @@ class Arbiter:
     A frame is decided once, and no older one after it.
     """
 
-    def __init__(self, priority: tuple[str, ...], awaited: tuple[str, ...], max_age_ns: int) -> None:
+    def __init__(
+        self, priority: tuple[str, ...], awaited: tuple[str, ...], max_age_ns: int, begins_with: tuple[str, ...] = ()
+    ) -> None:
         self._priority = priority
+        self._unheard = set(begins_with)
         self._awaited = frozenset(awaited)
         self._max_age_ns = max_age_ns
         self._frames: dict[int, dict[str, Wish]] = {}
@@ -51,6 +54,7 @@ class Arbiter:
 
     def hear(self, commander: str, wish: Wish, time_ns: int) -> None:
         """Take a command; one for a frame that is decided already changes nothing."""
+        self._unheard.discard(commander)
         if not self.is_awaited(commander):
             newest = self._free.get(commander)
             if newest is None or wish.capture_ns >= newest.capture_ns:
@@ -67,6 +71,8 @@ class Arbiter:
         if answers is None:
             return None
         stale = False
+        if self._unheard:
+            return self._decided(capture_ns, Decision(NOBODY, STILL, capture_ns))
         for commander in self._priority:
             wish = answers.get(commander) if self.is_awaited(commander) else self._free.get(commander)
             if wish is None:

@@ -37,7 +37,8 @@ class Base:
     def __init__(self, params: ports.Params, seed: int) -> None:
         del seed  # nothing is random here
         self._params = params
-        self._arbiter = Arbiter(COMMANDERS, params.commanders, round(params.max_age_s * NS))
+        max_age_ns = round(params.max_age_s * NS)
+        self._arbiter = Arbiter(COMMANDERS, params.commanders, max_age_ns, params.begins_with)
         self._drive = Drive(params)
         self._state = BaseState()
         self._state_ns = -1

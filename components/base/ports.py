@@ -19,6 +19,8 @@ class Params:
     """Of the session. In lockstep every frame is answered once and nothing is said between frames."""
     commanders: tuple[str, ...] = ("grasper", "pilot")
     """Who answers every frame; a frame is decided when they have. The others speak when they like."""
+    begins_with: tuple[str, ...] = ()
+    """Commanders without whose first word nothing moves: a person who shall have the robot from the start."""
     max_age_s: float = between(0.3, 0.05, 2.0)
     """A command that answers an older frame does not move the robot, and the robot stops when there is no newer."""
     join_s: float = positive(0.02)
