@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from benchmarks.aside import Subtracted, docks, taught
 from benchmarks.evaluation import TRAIN_S, learned_policy
 from benchmarks.figure import Figure
 from benchmarks.trials import LAUNCH, evaluate
 from docking.angles import DEG
+from docking.pinhole import Mount
 from docking.score import Trial
 from docking.showing import Percept, Showing
 from docking.task import Task
@@ -23,7 +26,7 @@ from docking.task_file import task_text
 from runtime.launch import load
 from runtime.lockstep import Lockstep
 
-STARTS, FLOOR_STARTS = 500, 100
+STARTS, FLOOR_STARTS, PLANT_STARTS = 500, 100, 100
 TUNED = (1.75, 1.0)
 """Gains of the linear law that dock from most starts, camera on the axis (`python -m benchmarks evaluation`)."""
 ASIDE = ("simulator.camera_left_m=0.05", f"simulator.camera_yaw_rad={3 * DEG}")
@@ -40,6 +43,7 @@ def figures() -> list[Figure]:
     shown = showing(ASIDE)
     goal = shown.task(Task())
     found = [
+        *without_camera(),
         Figure("taught camera yaw", goal.offset.yaw_rad / DEG, "deg", 2.0, 4.0, "3 deg true; alone from the goal"),
         Figure("taught camera offset", 45.0 * goal.offset.left, "cm", 4.0, 6.0, "5 cm true, at 45 cm height"),
     ]
@@ -53,6 +57,22 @@ def figures() -> list[Figure]:
         for name, own in (("linear law, tuned", linear), ("learned in 40 minutes", learned)):
             found += compared(name, own(()), own(aside))
     return found
+
+
+def without_camera(count: int = PLANT_STARTS) -> list[Figure]:
+    """The linear law on the plant alone: what the offset that the goal tells is worth."""
+    axis, aside = Mount(up_m=0.45), Mount(left_m=0.05, up_m=0.45, yaw_rad=3 * DEG)
+    goal = taught(aside)
+    tasks = {
+        "camera on the axis": (axis, taught(axis)),
+        "aside, goal taught": (aside, goal),
+        "aside, goal subtracted": (aside, Subtracted(**asdict(goal))),
+        "aside, goal not taught": (aside, taught(axis)),
+    }
+    return [
+        Figure(f"plant alone, {name}: docked", 100 * sum(docks(*own, TUNED, i) for i in range(count)) / count, "%")
+        for name, own in tasks.items()
+    ]
 
 
 def linear(overrides: Sequence[str], count: int = STARTS) -> list[Trial]:
