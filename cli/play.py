@@ -79,10 +79,10 @@ def play(
         start_s=start_offset,
         duration_s=duration,
         owners=replaced,
-        known=None if run is None else run.topics,
+        known=None if run is None else _listened_to(run, loop=loop),
         by_frame=run is not None and description(run).system.clock == "lockstep",
     )
-    opened = _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced)
+    opened = _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced, loop=loop)
     table, failed = _played(opened)
     table["log_s"] = round((head.time_ns - playlist.start_ns) / 1e9, 3)
     sys.stdout.write(json.dumps(table) + "\n" if as_json else "".join(f"{k:12} {v}\n" for k, v in table.items()))
@@ -137,13 +137,15 @@ def _own(playlist: Playlist, head: Playhead, realm: str, *, loop: bool) -> Itera
 
 
 @contextmanager
-def _joined(playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, ...]) -> Iterator[Player]:
+def _joined(
+    playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, ...], *, loop: bool
+) -> Iterator[Player]:
     """A player in the place of components of a running system."""
     session = description(run)
     specs = [spec for spec in _specs(playlist.launch) if spec.name in replaced]
     kinds = {key: ports_of(spec.run).OUTPUTS[port].kind for spec in specs for port, key in spec.outputs.items()}
     own = {key for spec in session.system.components for key in spec.outputs.values()}
-    lockstep = session.system.clock == "lockstep"
+    lockstep, frames = session.system.clock == "lockstep", _frames(session.system)
     if head.rate == 0 and not lockstep:
         raise ConfigurationError(f"--rate must be > 0 in {run.realm}, whose clock is real; got 0")
     clock = PacedClock(session.origin_ns, session.system.pace or 1.0)
@@ -158,11 +160,18 @@ def _joined(playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, .
             playlist,
             stage,
             head,
+            loop=loop,
             clock=False,
-            answers=Answers(stands(specs, own), _frames(session.system)) if lockstep else None,
+            seeks=not (lockstep and frames),  # a running world begins every epoch at its beginning
+            answers=Answers(stands(specs, own), frames) if lockstep else None,
             stall_s=session.system.stall_s,
             capture=None if lockstep else now,
         )
+
+
+def _listened_to(run: Run, *, loop: bool) -> set[str]:
+    """Keys that may come on a running system's bus; in a loop not the one that would end it."""
+    return set(run.topics) - ({description(run).system.end} if loop else set())
 
 
 def _frames(system: System) -> set[str]:

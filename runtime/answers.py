@@ -56,6 +56,13 @@ class Answers:
         """The last frame but one, and the last."""
         self._lock = Lock()
 
+    def reset(self) -> None:
+        """A new epoch: nothing was heard or shown in it."""
+        with self._lock:
+            self._time_ns = None
+            self._heard.clear()
+        self._shown = [-1, -1]
+
     @property
     def keys(self) -> set[str]:
         """What to listen to."""

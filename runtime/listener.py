@@ -49,7 +49,7 @@ class Listener:
             self._door.announce(name, number, first=None)  # it has been talking before we came
         await_links(self._session, len({name for _, name, _ in present} - {_SUPERVISOR}))
         watch(self._session, run.realm, self._presence, self._changed, self._failed)
-        # zenoh loses some messages while its routes to a late subscriber settle (seen); where time can be held, none come.
+        # zenoh loses some messages while its routes to a late subscriber settle (seen): hold time, and none come.
         paused = block and ask(self._session, run.realm, PAUSE)
         for key in keys:
             self._session.declare_subscriber(f"{run.realm}/{key}", direct(self._door.receive))

@@ -38,6 +38,7 @@ class Player:
         *,
         loop: bool = False,
         clock: bool = True,
+        seeks: bool = True,
         answers: Answers | None = None,
         stall_s: float = 10.0,
         capture: Callable[[int], int] | None = None,
@@ -49,7 +50,8 @@ class Player:
             stage: where.
             playhead: when.
             loop: begin anew at the end.
-            clock: tell on `player/clock` where it is, and let it be sought.
+            clock: tell on `player/clock` where it is.
+            seeks: obey `back` and `forward`.
             answers: wait for a running system's answer to each frame.
             stall_s: how long; wall time.
             capture: capture time in the log -> the one to play a message with; None = the same.
@@ -59,6 +61,7 @@ class Player:
         self._head = playhead
         self._loop = loop
         self._tells_clock = clock
+        self._seeks = seeks
         self._answers = answers
         self._stall_ns = round(stall_s * SECOND_NS)
         self._capture = capture or (lambda capture_ns: capture_ns)
@@ -75,8 +78,8 @@ class Player:
         """Messages put on the bus."""
         if answers is not None:
             for key in answers.keys:
-                stage.listen(key, self._hears(partial(answers.hear, key)))
-            stage.listen("*/status", self._hears(answers.hear_time))
+                stage.listen(key, self._ringing(partial(answers.hear, key)))
+            stage.listen("*/status", self._ringing(answers.hear_time))
 
     @property
     def epochs(self) -> int:
@@ -115,6 +118,11 @@ class Player:
     def _begin(self, since_ns: int) -> None:
         """A new epoch: whoever spoke in the last one is gone."""
         self._stage.leave()
+        if self._epoch.number > 0:
+            self._stage.forget()
+            if self._answers is not None:
+                self._answers.reset()
+            self._stage.begin_epoch()
         self._epoch = Epoch(self._epoch.number + 1)
         self._clock_stamp = Stamp(new_run(), 0, since_ns)
         self._clock_due_ns = 0
@@ -168,7 +176,7 @@ class Player:
                 self._head.step()
             elif word == "quit":
                 self.stop("quit")
-            elif word in {"back", "forward"} and self._tells_clock:
+            elif word in {"back", "forward"} and self._seeks:
                 jump_ns = _SEEK_NS if word == "forward" else -_SEEK_NS
                 self._sought_ns = max(self._playlist.start_ns, self._head.time_ns + jump_ns)
             self._waits_since_ns = time.monotonic_ns()
@@ -183,14 +191,9 @@ class Player:
         self._stage.put(CLOCK_KEY, "berth.Playback", message.SerializeToString(deterministic=True), _OWNER, stamp)
         self._clock_stamp = stamp._replace(sequence=stamp.sequence + 1)
 
-    def _hears(self, note: Callable[[int], None]) -> Callable[[zenoh.Sample], None]:
-        def hear(sample: zenoh.Sample) -> None:
-            attachment = sample.attachment
-            try:
-                if attachment is not None:
-                    note(unpack_stamp(attachment.to_bytes()).capture_ns)
-                    self._bell.set()
-            except Refused:
-                return  # its readers count it
+    def _ringing(self, note: Callable[[int], None]) -> Callable[[int], None]:
+        def hear(capture_ns: int) -> None:
+            note(capture_ns)
+            self._bell.set()
 
         return hear

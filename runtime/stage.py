@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import partial
 
 import zenoh
 
@@ -20,10 +21,12 @@ from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL, Qos, qos
 from runtime.runfile import Run, claim
 from runtime.system import System
-from runtime.wire import Stamp, encoding_of_name, new_run, pack_stamp
+from runtime.wire import Refused, Stamp, encoding_of_name, new_run, pack_stamp, unpack_stamp
+from runtime.wishes import EPOCH, ask
 
 CLOCK_KEY = "player/clock"
 _SUPERVISOR = "supervisor"
+_POLL_S = 0.01
 
 
 class Stage:
@@ -42,6 +45,8 @@ class Stage:
         self._hows = hows
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._tokens: dict[tuple[str, int], list[zenoh.LivelinessToken]] = {}
+        self._former: set[int] = set()
+        """Runs of a former epoch."""
 
     def put(self, key: str, schema: str, payload: bytes, owner: str, stamp: Stamp) -> None:
         """Publish one message as a component; its run is announced first."""
@@ -67,9 +72,17 @@ class Stage:
         )
         return self._publishers[key]
 
-    def listen(self, key: str, call: Callable[[zenoh.Sample], None]) -> None:
-        """Call with each sample of a key, on zenoh's thread."""
-        self._session.declare_subscriber(f"{self._realm}/{key}", direct(call))
+    def listen(self, key: str, call: Callable[[int], None]) -> None:
+        """Call with the capture time of each message of a key, on zenoh's thread."""
+        self._session.declare_subscriber(f"{self._realm}/{key}", direct(partial(self._hear, call)))
+
+    def _hear(self, call: Callable[[int], None], sample: zenoh.Sample) -> None:
+        try:
+            stamp = unpack_stamp(sample.attachment.to_bytes() if sample.attachment is not None else b"")
+        except Refused:
+            return  # its readers count it
+        if stamp.run not in self._former:
+            call(stamp.capture_ns)
 
     def leave(self) -> None:
         """End the runs announced so far."""
@@ -77,6 +90,51 @@ class Stage:
             for token in tokens:
                 token.undeclare()  # type: ignore[no-untyped-call]  # not annotated in zenoh's stubs
         self._tokens.clear()
+
+    def forget(self) -> None:
+        """Hear nothing more of those who speak now: they belong to an epoch that is over."""
+
+    def begin_epoch(self) -> None:
+        """Let those who listen begin anew; in a realm of one's own the new run ids say it all."""
+
+
+class JoinedStage(Stage):
+    """The realm of a running system, whose components can be started anew."""
+
+    def __init__(
+        self, session: zenoh.Session, realm: str, hows: Mapping[str, Qos], presence: Presence, folds: Collection[str]
+    ) -> None:
+        """Publish in a running system's realm.
+
+        Args:
+            session: open.
+            realm: prefix of all keys.
+            hows: as for every stage.
+            presence: of the running components.
+            folds: those of them that a new epoch resets.
+        """
+        super().__init__(session, realm, hows)
+        self._presence = presence
+        self._folds = folds
+
+    def forget(self) -> None:
+        """See `Stage.forget`."""
+        for name in self._folds:
+            self._former |= self._presence.runs(LISTENS, name)
+
+    def begin_epoch(self) -> None:
+        """Have every fold started anew, and wait until all are ready.
+
+        Raises:
+            ComponentError: the supervisor refuses, or somebody does not get ready.
+        """
+        if not ask(self._session, self._realm, EPOCH, READY_TIMEOUT_S):
+            raise ComponentError(f"{self._realm} has nobody who could begin a new epoch")
+        deadline_s = time.monotonic() + READY_TIMEOUT_S
+        while waited := [name for name in self._folds if not self._presence.runs(STARTS, name) - self._former]:
+            if time.monotonic() > deadline_s:
+                raise ComponentError(f"no sign of {', '.join(waited)} in {self._realm} after a new epoch")
+            time.sleep(_POLL_S)
 
 
 @contextmanager
@@ -138,4 +196,5 @@ def joined_stage(run: Run, session: Assignment, playlist: Playlist, kinds: Mappi
         if not presence.wait(STARTS, READY_TIMEOUT_S):
             raise ComponentError(f"no sign of {', '.join(presence.missing(STARTS))} in {run.realm}")
         await_links(bus, len(run.components))
-        yield Stage(bus, run.realm, {key: qos(kind, session.system.clock) for key, kind in kinds.items()})
+        hows = {key: qos(kind, session.system.clock) for key, kind in kinds.items()}
+        yield JoinedStage(bus, run.realm, hows, presence, [spec.name for spec in session.system.here if not spec.tap])

@@ -132,7 +132,6 @@ def test_a_log_stands_in_for_the_camera_of_a_running_system_in_real_time(log, tm
         (["LOG", "--remap", "world/image:=a/**"], "--remap must be OLD:=COMPONENT/PORT"),
         (["LOG", "--topics", "a/b"], "--topics must be keys of"),
         (["LOG", "--realm", "a/*"], "--realm must be words joined by /; got 'a/*'"),
-        (["LOG", "--replace", "world", "--loop"], "--loop must not be given with --replace"),
         (["LOG", "--replace", "world", "--realm", "no/such"], "realm no/such must be running"),
         (["LOG", "--replace", "world", "--fast", "--realm", "IDLE"], "--rate must be > 0 in"),
         (["LOG", "--replace", "echo", "--realm", "IDLE"], "--replace echo: must not run in"),

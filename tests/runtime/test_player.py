@@ -218,7 +218,7 @@ def stand_in(log, run, name):
 
 
 def play_instead(log, name, file):
-    """Play a component in a system that runs without it; what was recorded, and the supervisor."""
+    """Play a component in a system that runs without it; what was recorded."""
     system = load(log.file, ["world.frames=0"], only={"world", "echo", "recorder"} - {name}, recording=file)
     with Supervisor(system) as supervisor:
         run_to_end(supervisor, lambda: not supervisor.missing)
@@ -240,6 +240,42 @@ def test_in_lockstep_a_log_replaces_a_component_and_every_frame_is_answered_as_b
     before, again = by_key(messages(log.recording)), play_instead(log, name, tmp_path / "again.mcap")
     for key in ("world/image", "echo/drive"):
         assert contents(again[key][:FRAMES]) == contents(before[key][:FRAMES])
+
+
+def epochs_of(rows, key):
+    """The messages of each run, in the order of the runs."""
+    found: dict[int, list] = {}
+    for row in rows:
+        if row.topic == key:
+            found.setdefault(row.run, []).append(row)
+    return list(found.values())
+
+
+@pytest.mark.parametrize("name", ["world", "echo"])
+def test_a_loop_in_a_running_system_begins_an_epoch_in_which_its_components_are_new(log, tmp_path, name):
+    system = load(log.file, ["world.frames=0"], only={"world", "echo", "recorder"} - {name}, recording=tmp_path / "x")
+    with Supervisor(system) as supervisor:
+        run_to_end(supervisor, lambda: not supervisor.missing)
+        chosen, opened, answers = stand_in(log, find(system.realm), name)
+        ended = []
+        with opened as stage:
+            player = Player(chosen, stage, Playhead(0.0), loop=True, clock=False, answers=answers)
+            playing = threading.Thread(target=lambda: ended.append(player.run()), daemon=True)
+            playing.start()
+            run_to_end(supervisor, lambda: player.epochs >= 3 and player.played > 2.2 * FRAMES)
+            player.stop("enough")
+            run_to_end(supervisor, lambda: not playing.is_alive())
+        assert ended == ["enough"]
+        supervisor.stop("played")
+    assert (supervisor.exit_code, supervisor.lost, supervisor.deaths) == (0, 0, [])
+    before, rows = by_key(messages(log.recording)), messages(tmp_path / "x")
+    for key in ("world/image", "echo/drive"):
+        epochs = epochs_of(rows, key)
+        assert len(epochs) >= 3
+        for epoch in epochs[:2]:
+            assert [row.sequence for row in epoch] == list(range(len(epoch)))
+            assert contents(epoch[:FRAMES]) == contents(before[key][:FRAMES])
+    assert {row.topic for row in rows} >= {"world/image", "echo/drive", "recorder/ack"}
 
 
 def test_who_runs_is_not_replaced(log):
