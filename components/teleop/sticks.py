@@ -45,7 +45,7 @@ class Sticks:
     def now(self, request: Request = Request.NOTHING) -> Hand:
         """The pad as it is."""
         return Hand(
-            self._dead_man, -self._axis(self._params.forward_axis), -self._axis(self._params.left_axis), request
+            self._dead_man, self._share(self._params.forward_axis), self._share(self._params.left_axis), request
         )
 
     def _take(self, _time_ms: int, value: int, kind: int, number: int) -> Hand:
@@ -58,6 +58,7 @@ class Sticks:
             request = self._requests.get(number, Request.NOTHING)
         return self.now(request)
 
-    def _axis(self, number: int) -> float:
-        share = self._axes.get(number, 0.0)
-        return share if abs(share) > self._params.dead_zone else 0.0
+    def _share(self, axis: int) -> float:
+        """The kernel counts forwards and left as negative."""
+        value = self._axes.get(axis, 0.0)
+        return -value if abs(value) > self._params.dead_zone else 0.0
