@@ -44,6 +44,11 @@ class Presence:
         with self._changed:
             return set(self._runs.get((stage, name), ()))
 
+    def is_announced(self, stage: int, name: str, run: int) -> bool:
+        """Whether a run of a component is at a stage; an empty name stands for every component."""
+        with self._changed:
+            return any(run in runs for (at, other), runs in self._runs.items() if at == stage and name in {"", other})
+
     def wait(self, stage: int, timeout_s: float) -> bool:
         """Wait until nobody is missing at a stage; False if that took too long."""
         with self._changed:

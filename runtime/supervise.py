@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -22,7 +23,6 @@ from runtime.keeper import Keeper
 from runtime.link import Link
 from runtime.live import HOLD_KEY
 from runtime.meeting import Meeting
-from runtime.messages import message_class
 from runtime.outlet import Outlet
 from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL
@@ -30,7 +30,8 @@ from runtime.restart import Restarts
 from runtime.runfile import Run, claim
 from runtime.system import ComponentSpec, System
 from runtime.tap import known_keys
-from runtime.wire import Decoder, Refused, new_run, schema_name, unpack_stamp
+from runtime.watcher import Watcher
+from runtime.wire import new_run
 from runtime.wishes import EPOCH, GO_ON, PAUSE, PAUSE_S, Wishes
 from schemas.session_pb2 import Hold, Status
 
@@ -190,28 +191,11 @@ class Supervisor:
             self._watched.setdefault(self._system.end, lambda *_: None)
         for name in self._names:
             self._watched[f"{name}/status"] = self._take_status
-        for key in self._watched:
-            session.declare_subscriber(f"{realm}/{key}", direct(self._receiver(key)))
-
-    def _receiver(self, key: str) -> Callable[[zenoh.Sample], None]:
-        decoders: dict[str, Decoder | None] = {}
-
-        def receive(sample: zenoh.Sample) -> None:
-            try:
-                name = schema_name(str(sample.encoding))
-                if name not in decoders and len(decoders) < 2:
-                    kind = message_class(name)
-                    decoders[name] = Decoder(kind) if kind is not None else None
-                decoder = decoders.get(name)
-                if decoder is not None and sample.attachment is not None:
-                    stamp = unpack_stamp(sample.attachment.to_bytes())
-                    self._received(key, decoder(sample.payload.to_bytes()), stamp.capture_ns)
-            except Refused:
-                return  # its readers count it
-            except Exception as failure:  # noqa: BLE001  (zenoh would swallow it)
-                self._failed(failure)
-
-        return receive
+        for key, schema, publisher in known_keys(self._system):
+            if key in self._watched:
+                call = partial(self._received, key)
+                watcher = Watcher(schema, publisher, self._presence, call, self._failed)
+                session.declare_subscriber(f"{realm}/{key}", direct(watcher.receive))
 
     def _received(self, key: str, message: Any, capture_ns: int) -> None:
         if key == self._system.end:
