@@ -1,0 +1,72 @@
+"""The two halves of `launch/sim2.toml`, or of something like it, started on two machines for a test."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from benchmarks.watched import START_S, wait_until
+from tests.machines import ROBOT_ADDRESS, ROOT, Cable, Machine
+
+FRAME_NS = 125_000_000
+APPROACH = "APPROACH"
+LAUNCH = (ROOT / "launch" / "sim2.toml").read_text(encoding="utf-8")
+
+
+class Halves(NamedTuple):
+    robot: subprocess.Popen[str]
+    laptop: subprocess.Popen[str]
+
+    def alive(self) -> bool:
+        return all(half.poll() is None for half in self)
+
+    def end(self, signal_to_robot: bool) -> list[dict[str, Any]]:
+        """Summaries of both, after the robot was asked to stop."""
+        if signal_to_robot:
+            self.robot.send_signal(signal.SIGINT)
+        outputs = [half.communicate(timeout=60) for half in self]
+        assert [half.returncode for half in self] == [0, 0], outputs
+        return [json.loads(out) for out, _ in outputs]
+
+
+def start(cable: Cable, directory: Path, *words: str, launch: str = LAUNCH) -> Halves:
+    """`berth run` on both, in a realm of their own; the laptop records."""
+    file = directory / "two.toml"
+    realm = f"test/{directory.parent.name}-{directory.name}"
+    file.write_text(launch.replace('"berth/sim2"', f'"{realm}"'), encoding="utf-8")
+    there = f"tcp/{ROBOT_ADDRESS}:7447"
+    common = ("--json", "--record", str(directory / "laptop.mcap"), *words)
+    robot = ("run", str(file), "--host", "robot", "--listen", there, "--insecure", *common)
+    laptop = ("run", str(file), "--host", "laptop", "--connect", there, *common)
+    return Halves(cable.robot.berth(*robot), cable.laptop.berth(*laptop))
+
+
+def awaits_run_file(machine: Machine) -> None:
+    assert wait_until(lambda: list(machine.home.glob("berth/*.run.json")), START_S)
+
+
+class Echo:
+    """`berth topic echo KEY` on a machine, as far as it has come."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+
+    def last(self) -> dict[str, Any]:
+        """The newest whole line: the message's fields and its frame; only `frame` (-1) before the first."""
+        line = self._file.read_text(encoding="utf-8").rpartition("\n")[0].rpartition("\n")[2]
+        if not line:
+            return {"frame": -1}
+        table = json.loads(line)
+        return {**table["message"], "frame": round(table["capture_s"] * 8)}
+
+
+@contextmanager
+def echoed(machine: Machine, key: str, file: Path) -> Iterator[Echo]:
+    with file.open("w", encoding="utf-8") as stream:
+        machine.berth("topic", "echo", key, "--json", output=stream)
+        yield Echo(file)

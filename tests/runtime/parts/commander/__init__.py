@@ -1,0 +1,1 @@
+"""A part for the tests of the runtime."""
