@@ -66,8 +66,6 @@ def play(
 ) -> None:
     """Put a log on the bus, in a realm of its own. Example: berth play recordings/a.mcap -r 2 -x image."""
     replaced = tuple(name for name in replace.split(",") if name)
-    if replaced and loop:
-        raise ConfigurationError("--loop must not be given with --replace: the running components can not go back")
     if paused and not sys.stdin.isatty():
         sys.stderr.write("paused, and standard input is no terminal: it will not go on, only a signal ends it\n")
     run = find(realm) if replaced else None
@@ -82,7 +80,9 @@ def play(
         known=None if run is None else _listened_to(run, loop=loop),
         by_frame=run is not None and description(run).system.clock == "lockstep",
     )
-    opened = _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced, loop=loop)
+    opened = (
+        _own(playlist, head, realm, loop=loop) if run is None else _joined(playlist, head, run, replaced, loop=loop)
+    )
     table, failed = _played(opened)
     table["log_s"] = round((head.time_ns - playlist.start_ns) / 1e9, 3)
     sys.stdout.write(json.dumps(table) + "\n" if as_json else "".join(f"{k:12} {v}\n" for k, v in table.items()))
@@ -137,9 +137,7 @@ def _own(playlist: Playlist, head: Playhead, realm: str, *, loop: bool) -> Itera
 
 
 @contextmanager
-def _joined(
-    playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, ...], *, loop: bool
-) -> Iterator[Player]:
+def _joined(playlist: Playlist, head: Playhead, run: Run, replaced: tuple[str, ...], *, loop: bool) -> Iterator[Player]:
     """A player in the place of components of a running system."""
     session = description(run)
     specs = [spec for spec in _specs(playlist.launch) if spec.name in replaced]

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from functools import partial
 from threading import Event
 
-import zenoh
-
 from runtime.answers import Answers
 from runtime.clock import SECOND_NS
 from runtime.contract import ComponentError
@@ -18,7 +16,7 @@ from runtime.playhead import Playhead
 from runtime.playlist import Playlist
 from runtime.recording import Logged
 from runtime.stage import CLOCK_KEY, Stage
-from runtime.wire import Refused, Stamp, new_run, unpack_stamp
+from runtime.wire import Stamp, new_run
 from schemas.session_pb2 import Playback
 
 _CLOCK_NS = SECOND_NS // 10
@@ -122,7 +120,7 @@ class Player:
             self._stage.forget()
             if self._answers is not None:
                 self._answers.reset()
-            self._stage.begin_epoch()
+            self._stage.begin_epoch(lambda: bool(self._reason))
         self._epoch = Epoch(self._epoch.number + 1)
         self._clock_stamp = Stamp(new_run(), 0, since_ns)
         self._clock_due_ns = 0

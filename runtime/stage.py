@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from functools import partial
@@ -94,7 +94,7 @@ class Stage:
     def forget(self) -> None:
         """Hear nothing more of those who speak now: they belong to an epoch that is over."""
 
-    def begin_epoch(self) -> None:
+    def begin_epoch(self, is_over: Callable[[], bool]) -> None:
         """Let those who listen begin anew; in a realm of one's own the new run ids say it all."""
 
 
@@ -102,7 +102,7 @@ class JoinedStage(Stage):
     """The realm of a running system, whose components can be started anew."""
 
     def __init__(
-        self, session: zenoh.Session, realm: str, hows: Mapping[str, Qos], presence: Presence, folds: Collection[str]
+        self, session: zenoh.Session, realm: str, hows: Mapping[str, Qos], presence: Presence, system: System
     ) -> None:
         """Publish in a running system's realm.
 
@@ -111,27 +111,33 @@ class JoinedStage(Stage):
             realm: prefix of all keys.
             hows: as for every stage.
             presence: of the running components.
-            folds: those of them that a new epoch resets.
+            system: that runs there.
         """
         super().__init__(session, realm, hows)
         self._presence = presence
-        self._folds = folds
+        self._system = system
 
     def forget(self) -> None:
         """See `Stage.forget`."""
-        for name in self._folds:
-            self._former |= self._presence.runs(LISTENS, name)
+        for spec in self._system.here:  # taps too: their time goes on
+            self._former |= self._presence.runs(LISTENS, spec.name)
 
-    def begin_epoch(self) -> None:
+    def begin_epoch(self, is_over: Callable[[], bool]) -> None:
         """Have every fold started anew, and wait until all are ready.
+
+        Args:
+            is_over: whether nobody needs that any more.
 
         Raises:
             ComponentError: the supervisor refuses, or somebody does not get ready.
         """
         if not ask(self._session, self._realm, EPOCH, READY_TIMEOUT_S):
             raise ComponentError(f"{self._realm} has nobody who could begin a new epoch")
+        folds = [spec.name for spec in self._system.here if not spec.tap]
         deadline_s = time.monotonic() + READY_TIMEOUT_S
-        while waited := [name for name in self._folds if not self._presence.runs(STARTS, name) - self._former]:
+        while waited := [name for name in folds if not self._presence.runs(STARTS, name) - self._former]:
+            if is_over():
+                return
             if time.monotonic() > deadline_s:
                 raise ComponentError(f"no sign of {', '.join(waited)} in {self._realm} after a new epoch")
             time.sleep(_POLL_S)
@@ -197,4 +203,4 @@ def joined_stage(run: Run, session: Assignment, playlist: Playlist, kinds: Mappi
             raise ComponentError(f"no sign of {', '.join(presence.missing(STARTS))} in {run.realm}")
         await_links(bus, len(run.components))
         hows = {key: qos(kind, session.system.clock) for key, kind in kinds.items()}
-        yield JoinedStage(bus, run.realm, hows, presence, [spec.name for spec in session.system.here if not spec.tap])
+        yield JoinedStage(bus, run.realm, hows, presence, session.system)
