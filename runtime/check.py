@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from runtime.contract import Event
+from runtime.contract import ComponentError, Event
 from runtime.hosted import Hosted, Sample
 from runtime.lockstep import Lockstep
 from runtime.params import ConfigurationError
@@ -50,8 +50,7 @@ def traces(system: System, duration_s: float) -> dict[str, Trace]:
     """Run the system in this process and keep everything.
 
     Raises:
-        ConfigurationError: its clock is not lockstep.
-        ComponentError: a component can not go on.
+        ConfigurationError: its clock is not lockstep, it has no world that shows frames, or a component can not go on.
     """
     if system.clock != "lockstep":
         raise ConfigurationError(f"{system.file}: session.clock must be lockstep to be checked; got {system.clock!r}")
@@ -63,7 +62,10 @@ def traces(system: System, duration_s: float) -> dict[str, Trace]:
         found[name].outputs.append(samples)
 
     engine.observe = keep
-    engine.run(duration_s)
+    try:
+        engine.run(duration_s)
+    except ComponentError as error:
+        raise ConfigurationError(f"{system.file}: can not be tried in one process: {error}") from None
     return found
 
 

@@ -69,3 +69,8 @@ def test_what_is_broken_is_said_with_its_place(tmp_path):
 def test_only_lockstep_can_be_checked():
     with pytest.raises(ConfigurationError, match=r"session\.clock must be lockstep to be checked; got 'real'"):
         traces(load(LAUNCH, clock="real"), 1.0)
+
+
+def test_a_launch_without_a_world_can_not_be_tried_and_says_so():
+    with pytest.raises(ConfigurationError, match=r"look\.toml: can not be tried in one process: .*nobody answers"):
+        check(load("launch/look.toml", clock="lockstep"), 1.0)
