@@ -40,7 +40,7 @@ def topics_of(files: Sequence[Path]) -> dict[str, str]:
             elif isinstance(item, Channel) and item.message_encoding == "cdr":
                 name = schemas.get(item.schema_id, "")
                 if name in _IMAGES or name == ODOMETRY:
-                    found[item.topic] = name
+                    found.setdefault(item.topic, name)
     return found
 
 
@@ -77,18 +77,19 @@ def _one(topics: list[str], wanted: str, option: str, bag: Path) -> str:
 
 def read(files: Sequence[Path], topics: dict[str, str], faults: list[Fault]) -> Iterator[Found]:
     """What is on these topics, in the order of the files."""
-    decoders = {topic: decoder_of(name) for topic, name in topics.items()}
+    decoders = {name: decoder_of(name) for name in (*_IMAGES, ODOMETRY)}
     for file in files:
         for logged in Recording(file).messages(list(topics), faults):
-            if plain_name(logged.schema) != topics[logged.topic]:
+            name = plain_name(logged.schema)
+            if name not in decoders or (name in _IMAGES) != (topics[logged.topic] in _IMAGES):
                 yield Useless("another type on the same topic")
                 continue
             try:
-                message = decoders[logged.topic](logged.payload)
+                message = decoders[name](logged.payload)
             except UndecodableError as error:
                 yield Useless(str(error))
                 continue
-            yield _found(message, topics[logged.topic], logged)
+            yield _found(message, name, logged)
 
 
 def _found(message: Any, name: str, logged: Logged) -> Found:
