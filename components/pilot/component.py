@@ -132,10 +132,12 @@ class Pilot:
             self._heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, **numbers)
 
     def _hear_applied(self, applied: Applied, capture_ns: int) -> None:
-        field = "led_ns" if applied.commander == _PERSON and applied.v_mps > 0.0 else _HEARD.get(applied.commander)
-        if field is not None and capture_ns > getattr(self._heard, field):
-            newest: dict[str, Any] = {field: capture_ns}
-            self._heard = replace(self._heard, **newest)
+        heard = self._heard
+        led = applied.commander == _PERSON and applied.v_mps > 0.0
+        led_ns = (capture_ns if heard.led_ns < 0 else heard.led_ns) if led else -1
+        field = _HEARD.get(applied.commander)
+        newest: dict[str, Any] = {} if field is None else {field: max(capture_ns, getattr(heard, field))}
+        self._heard = replace(heard, led_ns=led_ns, **newest)
 
     def _hear_grasp(self, grasp: Grasp, capture_ns: int) -> None:
         heard = self._heard

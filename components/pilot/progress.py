@@ -99,7 +99,7 @@ class Heard:
     hindered_ns: int = -1
     """Newest frame in which base refused to drive further back."""
     led_ns: int = -1
-    """Newest frame in which a person drove the robot forwards."""
+    """Since when a person has been driving the robot forwards; -1 = nobody does."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -159,13 +159,19 @@ def _reverse(rules: Rules, progress: Progress, frame: Frame) -> Step:
         progress = replace(progress, turning=True)
     late = _since(frame, progress.mode_began_ns) > rules.params.reverse_timeout_s
     there = progress.turning and reverse.has_turned(rules, sight, start)
-    led = frame.heard.led_ns > progress.mode_began_ns and sight.tilt_rad <= rules.task.start_tilt_max_rad
-    if rules.grid.cell(sight.beta_rad, sight.alpha_rad) != SINK and (late or there or led):
+    cell = rules.grid.cell(sight.beta_rad, sight.alpha_rad)
+    if cell != SINK and (late or there or (cell != rules.grid.goal and _is_led(rules, progress, frame))):
         return _wait(rules, begin(progress, frame.time_ns, progress.number + 1), frame)
     if late:
         progress = begin_reverse(rules, progress, frame)
     move = reverse.turn if progress.turning else reverse.back_off
     return progress, move(rules, sight, progress.start)
+
+
+def _is_led(rules: Rules, progress: Progress, frame: Frame) -> bool:
+    """A person has begun to drive forwards, from as far as trials begin."""
+    afar = frame.sight.tilt_rad <= rules.task.start_tilt_max_rad
+    return afar and frame.heard.led_ns > progress.mode_began_ns
 
 
 def _is_hindered(rules: Rules, progress: Progress, frame: Frame) -> bool:

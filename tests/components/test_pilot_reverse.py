@@ -179,12 +179,24 @@ def test_near_the_table_a_refused_reverse_does_not_turn_on_the_spot():
     assert all(said.v_mps < 0.0 for said, trial in hindered("rear", 0.4)[2:40] if trial.mode == Trial.REVERSE)
 
 
-def test_a_person_who_drives_forwards_from_afar_begins_a_trial():
-    params = Params(controller="lc", train_s=1e9)
-    for d_m, begins in ((0.5, False), (1.4, True)):
-        pilot = Pilot(params, 1)
-        frame(pilot, 0, percept(0.0, 0.0, Task().goal_tilt_rad))
-        for k in range(1, 5):
-            _, trial, _ = frame(pilot, k, percept(0.4, 0.3, math.atan2(HEIGHT_M, d_m)))
-            tell(pilot, "applied", Applied(v_mps=0.1, commander="teleop"), k)
-        assert (trial.mode == Trial.APPROACH) == begins
+@pytest.mark.parametrize(
+    ("look", "led", "begins"),
+    [
+        ((0.4, 0.3, 1.4), range(2, 9), True),
+        ((0.4, 0.3, 0.5), range(2, 9), False),  # nearer than starts are
+        ((0.0, 0.0, 1.4), range(2, 9), False),  # in the goal cell
+        ((0.4, 0.3, 1.4), range(9), False),  # he drives on from the trial before
+        ((0.4, 0.3, 1.4), (), False),
+    ],
+)
+def test_a_person_who_sets_out_from_afar_begins_a_trial(look, led, begins):
+    beta, alpha, d_m = look
+    pilot = Pilot(Params(controller="lc", train_s=1e9), 1)
+    modes = []
+    for k in range(9):
+        tilt = Task().goal_tilt_rad if k == 0 else math.atan2(HEIGHT_M, d_m)
+        _, trial, _ = frame(pilot, k, percept(0.0, 0.0, tilt) if k == 0 else percept(beta, alpha, tilt))
+        tell(pilot, "applied", Applied(v_mps=0.1 * (k in led), commander="teleop"), k)
+        modes.append(trial.mode)
+    assert modes[1] == Trial.REVERSE
+    assert (Trial.APPROACH in modes[2:]) == begins
