@@ -15,7 +15,7 @@ from docking.score import Trial
 from report.failures import Endings, Failed
 from report.frames import Scoreboard, is_sane
 from report.pairs import Pairs
-from report.shadow import Beside, ShadowReader
+from report.shadow import Beside, ShadowReader, task_of
 from runtime.params import ConfigurationError
 from runtime.recording import Logged, Recording
 from schemas.percept_pb2 import Percept
@@ -85,6 +85,7 @@ class _Reader:
         self._board = Scoreboard()
         self._endings = Endings()
         self._shadow = ShadowReader(session.launch)
+        self._offset = task_of(session.launch).offset
         self._next: dict[tuple[str, int], int] = {}
         self._pairs: Pairs[Percept, Truth] = Pairs()
         self._image: Logged | None = None
@@ -140,9 +141,10 @@ class _Reader:
         if pair is None:
             return
         percept, truth = pair
-        if percept.visible and math.isfinite(percept.pan_rad):
+        if percept.visible and math.isfinite(percept.pan_rad) and math.isfinite(percept.tilt_rad):
             self._session.tracking_px.append(math.hypot(truth.object_u_px, truth.object_v_px))
-            self._session.bearing_error_rad.append(abs(wrap(percept.pan_rad - truth.alpha_rad)))
+            alpha_rad = self._offset.from_axle(percept.pan_rad, percept.tilt_rad).alpha_rad
+            self._session.bearing_error_rad.append(abs(wrap(alpha_rad - truth.alpha_rad)))
 
 
 def _is_policy(message: Policy | None) -> bool:

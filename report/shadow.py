@@ -69,7 +69,7 @@ class ShadowReader:
         self.frames: list[Beside] = []
         keys = Keys.of(launch)
         self._names = {} if not keys.drive else {key: name for name, key in vars(keys).items() if key}
-        self._task = _task(launch)
+        self._task = task_of(launch)
         self._waiting: dict[int, dict[str, Any]] = {}
 
     def take(self, logged: Logged) -> None:
@@ -137,7 +137,8 @@ def _row(stretch: list[Beside]) -> dict[str, float]:
     }
 
 
-def _task(launch: Mapping[str, Any]) -> Task:
+def task_of(launch: Mapping[str, Any]) -> Task:
+    """The task of a session, from its resolved launch file."""
     table = launch.get("task")
     try:
         return build(Task, table if isinstance(table, dict) else {}, "task")

@@ -4,18 +4,18 @@ import json
 import sys
 import tomllib
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from benchmarks.goal import ASIDE, STANDING, linear_law
-from benchmarks.trials import watched
 from cli.goal import goal
 from cli.main import main
 from cli.sight import eyes
 from docking.angles import DEG
 from docking.task import Task
+from report.session import read
 from runtime.launch import load
-from runtime.lockstep import Lockstep
 from runtime.params import ConfigurationError
 from runtime.recording import Recording
 from tests.recorded_session import LAUNCH, record
@@ -51,14 +51,16 @@ def test_a_recording_of_the_pick_up_pose_gives_a_goal_that_knows_where_the_camer
     assert tomllib.loads((tmp_path / "goal.toml").read_text(encoding="utf-8")) == table["task"]
 
 
-def test_from_an_aside_camera_s_taught_goal_the_linear_law_docks(standing, tmp_path):
+def test_with_the_taught_goal_of_a_camera_aside_the_linear_law_docks_and_the_report_reads_bearings_from_the_axle(
+    standing, tmp_path
+):
     """A short version of `python -m benchmarks goal`; without the goal none of these starts docks."""
-    file = tmp_path / "goal.toml"
-    teach("--from", standing, "-o", file)
-    few = ("pilot.train_s=0", "pilot.evaluation_trials=4", f"pilot.task={file}")
-    trials = watched(Lockstep(load(LAUNCH, [*linear_law(), *ASIDE, *few]))).trials
-    assert [trial.docked for trial in trials] == [True] * 4
-    assert not any(trial.collided for trial in trials)
+    goal_file, driven = tmp_path / "goal.toml", tmp_path / "driven.mcap"
+    teach("--from", standing, "-o", goal_file)
+    record(driven, [*linear_law(), *ASIDE, "pilot.train_s=0", "pilot.evaluation_trials=4", f"pilot.task={goal_file}"])
+    session = read(driven)
+    assert [(trial.docked, trial.picked, trial.collided) for trial in session.trials] == [(True, True, False)] * 4
+    assert np.percentile(session.bearing_error_rad, 95) < 2 * DEG
 
 
 def test_the_frames_are_those_from_the_second_asked_for(standing, tmp_path):
