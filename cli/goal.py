@@ -98,8 +98,8 @@ def teach(
             shown = _watched(realm, frames, at_once=at_once)
         showing = Showing.of([frame.percept for frame in shown.frames])
         task = showing.task(shown.base, None if heading_deg is None else heading_deg * DEG)
-    except NotShownError as reason:
-        raise ConfigurationError(f"no goal: {reason}") from None
+    except (NotShownError, KeyboardInterrupt) as reason:
+        raise ConfigurationError(f"no goal: {str(reason) or 'interrupted'}") from None
     source = f"from {shown.source}, session second {shown.at_s:.9f} on"
     _write(output, task_text(task, showing, [f"Taught {now().isoformat(timespec='seconds')}", source]))
     _print(output, shown, showing, task, as_json=as_json)
