@@ -1,4 +1,7 @@
-"""`berth check [LAUNCH]`: the machine and, with a launch file, the contract of every component."""
+"""`berth check [LAUNCH]`: the machine and, with a launch file, the contract of every component.
+
+`berth check hardware LAUNCH` lets the robot move a little and checks how it is wired: `cli.hardware`.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,14 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+import typer.core
 from rich.console import Console
 from rich.table import Table
 
+from cli.hardware import hardware
 from runtime.check import Finding
 from runtime.check import check as check_contract
 from runtime.fingerprint import fingerprint
@@ -22,7 +27,26 @@ DURATION = Annotated[float, typer.Option(help="Session seconds to run.", min=1.0
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
 
-def check(launch: LAUNCH = None, duration: DURATION = 15.0, as_json: JSON = False) -> None:
+CONTRACT = "contract"
+"""The verb that stands for a launch file alone."""
+
+
+class OrContract(typer.core.TyperGroup):
+    """A word that is none of its verbs is the launch file of the first one."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Name the verb that was left out."""
+        named = bool(args) and (args[0] in self.commands or args[0] in ctx.help_option_names)
+        return super().parse_args(ctx, args if named else [CONTRACT, *args])
+
+
+check = typer.Typer(cls=OrContract, help="Check this machine, a launch file's components, or a robot.",
+                    rich_markup_mode=None, add_completion=False)  # fmt: skip
+check.command("hardware")(hardware)
+
+
+@check.command(CONTRACT)
+def contract(launch: LAUNCH = None, duration: DURATION = 15.0, as_json: JSON = False) -> None:
     """Check this machine and a launch file's components. Example: berth check launch/sim.toml."""
     findings = _machine()
     if launch is not None:

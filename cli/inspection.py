@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from cli.in_process import on_signal
@@ -162,7 +163,7 @@ def _on_bus(system: System, calls: Watch) -> str:
     waiting: deque[tuple[str, Any, int]] = deque()
     supervisor = Supervisor(system)
     for key in calls:
-        supervisor.watch(key, lambda message, capture_ns, key=key: waiting.append((key, message, capture_ns)))
+        supervisor.watch(key, partial(_keep, waiting, key))
     with on_signal(lambda: supervisor.stop_soon("interrupted")), supervisor:
         heard_s, newest_ns = time.monotonic(), 0
         while supervisor.poll(0.05):
@@ -177,6 +178,10 @@ def _on_bus(system: System, calls: Watch) -> str:
         supervisor.stop()
     _hand_out(calls, waiting)
     return supervisor.end_reason
+
+
+def _keep(waiting: deque[tuple[str, Any, int]], key: str, message: Any, capture_ns: int) -> None:
+    waiting.append((key, message, capture_ns))
 
 
 def _hand_out(calls: Watch, waiting: deque[tuple[str, Any, int]]) -> None:

@@ -33,6 +33,7 @@ VERBS: dict[str, str] = {
     "experiment": "cli.experiment:experiment",
     "graph": "cli.graph:graph",
     "check": "cli.check:check",
+    "tune": "cli.tune:tune",
 }
 """Verb -> module:name of a function with typer's annotations, or of a `typer.Typer` with verbs of its own."""
 

@@ -68,7 +68,9 @@ def _way(samples: Sequence[Sample], axis: Axis) -> Way:
 def _axis(name: str, way: Way, width_px: int) -> tuple[list[Judgement], float]:
     motor, encoder = f"{name} motor", f"{name} encoder"
     if not abs(way.image_px) > LEAST_PX:
-        words = f"the image did not move when the head was told to turn by {math.degrees(way.asked_rad):.0f} deg"
+        words = (
+            f"told to turn by {math.degrees(way.asked_rad):.0f} deg, it did not move the image: no motor, or a unit?"
+        )
         return [unknown(motor, words), unknown(encoder, words)], math.nan
     read = way.image_px / way.read_rad if way.read_rad else math.inf
     told = way.image_px / way.asked_rad

@@ -81,6 +81,11 @@ def _snapped(factor: float, *, exact: bool) -> float:
     return factor
 
 
+def has_name(factor: float) -> bool:
+    """Whether a factor is that of a unit that people confuse."""
+    return bool(_named(factor))
+
+
 def _named(factor: float) -> str:
     size = max(abs(factor), 1.0 / abs(factor))
     name = next((name for unit, name in UNITS.items() if unit / CLOSE_ENOUGH <= size <= unit * CLOSE_ENOUGH), "")

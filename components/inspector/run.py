@@ -13,6 +13,8 @@ from components.inspector.script import script
 
 _ASTRAY = 0.3
 """The object may move by this share of the image's width: more than all motions together."""
+_DEEPER_PX = 6.0
+"""Rows that the object may sink while the robot drives: 4 cm are two of them from 2 m, and four from 1.4 m."""
 _ENDING_FRAMES = 6
 """At rest before the end is said."""
 
@@ -134,6 +136,11 @@ class Run:
             return f"the object is not in the image ({self.phase})"
         seen = next((sample for sample in self.samples if sample.visible), now)
         way_px = max(abs(now.u_px - seen.u_px), abs(now.v_px - seen.v_px)) if now.visible else 0.0
-        if way_px > _ASTRAY * self.params.width_px:
-            return f"the object moved {way_px:.0f} px in the image, far more than was asked for ({self.phase})"
+        if way_px > _ASTRAY * self.params.width_px or self._deeper_px(now) > _DEEPER_PX:
+            return f"the object moved far more in the image than was asked for ({self.phase})"
         return ""
+
+    def _deeper_px(self, now: Sample) -> float:
+        """Rows that the object moved since a drive began."""
+        drives = now.visible and self._first is not None and self._first.visible and bool(self._wish.v_mps)
+        return abs(now.v_px - self._first.v_px) if drives and self._first is not None else 0.0

@@ -36,7 +36,7 @@ def response(commands: Track, lag_s: float, cycle_s: float, rate_radps: float, u
     """
     share, reach = 1.0 - math.exp(-cycle_s / lag_s), rate_radps * cycle_s
     count = math.floor((until_s - float(commands.time_s[0])) / cycle_s + 1e-6) + 1
-    time_s = float(commands.time_s[0]) + cycle_s * np.arange(count)
+    time_s = float(commands.time_s[0]) + cycle_s * np.arange(count, dtype=np.float64)
     newest = np.searchsorted(commands.time_s, time_s - 1e-6, side="left") - 1
     targets = commands.angle_rad[np.clip(newest, 0, None)].tolist()
     angle = targets[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from components.inspector.judgement import Judgement, Verdict, scaled, unknown
+from components.inspector.judgement import Judgement, Verdict, has_name, scaled, unknown
 from components.inspector.ports import Params
 from components.inspector.sample import Sample, settled
 
@@ -44,7 +44,7 @@ def _turn(samples: Sequence[Sample], params: Params, focal_px: float) -> list[Ju
     image_rad = _between(samples, "before the turn", "after the turn", lambda s: s.u_px) / focal_px
     read_rad = _between(samples, "before the turn", "after the turn", lambda s: s.heading_rad)
     if not abs(image_rad) > LEAST_TURN * asked_rad:
-        words = f"the image did not move when the robot was told to turn by {math.degrees(asked_rad):.0f} deg"
+        words = f"told to turn by {math.degrees(asked_rad):.0f} deg, it did not move the image: no motors, or a unit?"
         return [unknown("turn", words), unknown("heading", words)]
     turn = scaled("turn", image_rad / asked_rad, BASE, "turn_scale", exact=True)
     if not abs(read_rad) > 1e-3 * asked_rad:
@@ -57,7 +57,7 @@ def _drive(samples: Sequence[Sample], params: Params, heading: Judgement) -> lis
     sunk_px = _sunk(samples)
     row_px = abs(settled(samples, "before the drive", lambda s: s.v_px))
     if not abs(sunk_px) > LEAST_PX:
-        words = f"the object did not come nearer when the robot was told to drive {100 * asked_m:.0f} cm"
+        words = f"told to drive {100 * asked_m:.0f} cm, it did not come nearer to the object: no motors, or a unit?"
         return [unknown("drive", words), unknown("odometry", words)]
     image_m = params.nearby_m * sunk_px / max(row_px, 1.0)
     drive = _roughly("drive", image_m / asked_m, "speed_scale")
@@ -66,7 +66,11 @@ def _drive(samples: Sequence[Sample], params: Params, heading: Judgement) -> lis
         return [drive, Judgement("odometry", Verdict.WRONG, "it reads no way while the robot moves")]
     trusted = drive.verdict == Verdict.GOOD or drive.value == -1.0
     true_m = math.copysign(asked_m, image_m) if trusted else image_m
-    return [drive, scaled("odometry", read_m / true_m, BASE, "odometry_scale", exact=True)]
+    odometry = scaled("odometry", read_m / true_m, BASE, "odometry_scale", exact=True)
+    if odometry.verdict == Verdict.WRONG and abs(odometry.value) != 1.0 and not has_name(odometry.value):
+        words = f"the way read is {read_m / true_m:.2f} of the way told: drive a metre and measure which is wrong"
+        odometry = Judgement("odometry", Verdict.WRONG, words, read_m / true_m)
+    return [drive, odometry]
 
 
 def _roughly(thing: str, ratio: float, param: str) -> Judgement:

@@ -35,6 +35,8 @@ class Tracker:
         del seed  # nothing is random here
         self._tuning = Tuning(params)
         self._latency_ns = round(params.base_latency_s * 1e9)
+        self._shift_ns = round((params.encoder_latency_s - params.camera_latency_s) * 1e9)
+        self._camera_ns = round(params.camera_latency_s * 1e9)
         self._state = begun(params)
 
     def handle(self, event: Event) -> tuple[Output, ...]:
@@ -48,9 +50,10 @@ class Tracker:
         elif event.port == "head":
             state.join.reading(reading_of(event.message, event.capture_ns))
         outputs: list[Output] = []
-        for sight, head in state.join.ready():
-            aim = follow(state, sight, head, self._tuning)
-            outputs += self._outputs(aim, state.seen, sight.capture_ns)
+        for capture_ns, sight, head in state.join.ready(self._shift_ns):
+            exposure_ns = sight.capture_ns - self._camera_ns
+            aim = follow(state, sight, head, self._tuning, capture_ns - exposure_ns)
+            outputs += self._outputs(aim, state.seen, capture_ns, exposure_ns)
         return tuple(outputs)
 
     def save(self) -> bytes:
@@ -69,13 +72,13 @@ class Tracker:
         if abs(applied.v_mps) <= FASTEST and abs(applied.omega_radps) <= FASTEST:
             self._state.base.command(time_ns + self._latency_ns, applied.v_mps, applied.omega_radps)
 
-    def _outputs(self, aim: Aim, seen: Seen, capture_ns: int) -> tuple[Output, Output]:
+    def _outputs(self, aim: Aim, seen: Seen, capture_ns: int, exposure_ns: int) -> tuple[Output, Output]:
         percept = Percept(
             visible=seen.visible,
             slope=seen.slope,
             pan_rad=seen.bearing_rad,
             tilt_rad=seen.depression_rad,
-            capture_time_ns=capture_ns,
+            capture_time_ns=exposure_ns,
             pan_error_px=seen.u_px,
             tilt_error_px=seen.v_px,
             focal_px=self._state.calibration.focal_px,

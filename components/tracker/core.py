@@ -77,10 +77,18 @@ class Tuning:
         self.smoother = smoother(params.drift_memory)
 
 
-def follow(state: State, sight: Sight, head: Reading, tuning: Tuning) -> Aim:
-    """Take one frame, oldest first; the percept is then in `state.seen`."""
+def follow(state: State, sight: Sight, head: Reading, tuning: Tuning, age_ns: int = 0) -> Aim:
+    """Take one frame, oldest first; the percept is then in `state.seen`.
+
+    Args:
+        state: changed.
+        sight: in the image.
+        head: encoders at its exposure.
+        tuning: the parameters.
+        age_ns: from the exposure to the capture time of the frame that is answered.
+    """
     params = tuning.params
-    state.base.advance(sight.capture_ns, tuning.limits)
+    state.base.advance(sight.capture_ns - round(params.camera_latency_s * 1e9), tuning.limits)
     state.seen.visible = False
     if not head.readable:
         return Aim(state.search.pan_rad, state.search.tilt_rad)
@@ -89,7 +97,7 @@ def follow(state: State, sight: Sight, head: Reading, tuning: Tuning) -> Aim:
     if not state.calibration.focal_px:
         return _calibrate(state, sight, head, params)
     _perceive(state, sight, head, params)
-    return _track(state, head, tuning)
+    return _track(state, head, tuning, age_ns * 1e-9)
 
 
 def _lost(state: State, time_ns: int, params: Params) -> Aim:
@@ -126,9 +134,9 @@ def _perceive(state: State, sight: Sight, head: Reading, params: Params) -> None
     seen.visible = state.edge_known and state.edgeless_frames <= params.edge_memory_frames
 
 
-def _track(state: State, head: Reading, tuning: Tuning) -> Aim:
+def _track(state: State, head: Reading, tuning: Tuning, age_s: float) -> Aim:
     seen, params = state.seen, tuning.params
-    pan_rate_radps, tilt_rate_radps = _rates(state, tuning)
+    (pan_rate_radps, tilt_rate_radps), (pan_since_rad, tilt_since_rad) = _rates(state, tuning, age_s)
     pan_error_rad = seen.bearing_rad - head.pan_rad
     tilt_error_rad = seen.depression_rad - head.tilt_rad
     pan = head.pan_rad + state.pan.correction_rad(pan_error_rad, params.pan_gain_p, params.pan_gain_d)
@@ -137,17 +145,23 @@ def _track(state: State, head: Reading, tuning: Tuning) -> Aim:
     if not params.feed_forward:
         return Aim(pan, tilt)
     lag_s = params.head_lag_s
+    pan, tilt = pan + pan_since_rad, tilt + tilt_since_rad
     return Aim(pan + pan_rate_radps * lag_s, tilt + tilt_rate_radps * lag_s, pan_rate_radps, tilt_rate_radps)
 
 
-def _rates(state: State, tuning: Tuning) -> tuple[float, float]:
-    """Mean rates (pan, tilt) of the object's direction until the next frame, as far as the base's commands tell."""
+def _rates(state: State, tuning: Tuning, age_s: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """How the object's direction (pan, tilt) moves, as far as the base's commands tell.
+
+    Returns:
+        mean rates from the capture to the next one, and the way since the exposure.
+    """
     base, frame_s = state.base, tuning.params.frame_s
     way_m, state.way_m = base.way_m - state.way_m, base.way_m
     state.pan_drift.update(state.seen.bearing_rad + base.heading_rad, way_m, tuning.smoother)
     state.tilt_drift.update(state.seen.depression_rad, way_m, tuning.smoother)
-    next_m, turn_rad = base.ahead(frame_s, tuning.limits)
-    return (
-        (state.pan_drift.rad_per_m * next_m - turn_rad) / frame_s,
-        state.tilt_drift.rad_per_m * next_m / frame_s,
-    )
+    since_m, since_rad = base.ahead(age_s, tuning.limits) if age_s else (0.0, 0.0)
+    next_m, turn_rad = base.ahead(age_s + frame_s, tuning.limits)
+    next_m, turn_rad = next_m - since_m, turn_rad - since_rad
+    pan, tilt = state.pan_drift.rad_per_m, state.tilt_drift.rad_per_m
+    rates = ((pan * next_m - turn_rad) / frame_s, tilt * next_m / frame_s)
+    return rates, (pan * since_m - since_rad, tilt * since_m)

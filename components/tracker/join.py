@@ -46,6 +46,8 @@ class Join:
     answered_ns: int = -1
     sights: list[Sight] = field(default_factory=list)
     readings: list[Reading] = field(default_factory=list)
+    held: list[Sight] = field(default_factory=list)
+    """Images whose encoders are still to come, where encoders are later than images."""
 
     def sight(self, sight: Sight) -> None:
         """Take what was seen; images that are older than another one, or come twice, are dropped."""
@@ -60,12 +62,31 @@ class Join:
             del self.readings[: max(0, len(self.readings) - HEADS + 1)]
             self.readings.append(reading)
 
-    def ready(self) -> Iterator[tuple[Sight, Reading]]:
-        """Pairs that are complete, each once."""
+    def ready(self, shift_ns: int = 0) -> Iterator[tuple[int, Sight, Reading]]:
+        """Each image once: its capture time, and the newest image whose encoders are known, with them.
+
+        That is the image itself unless encoders are later than images; then an older one, because a head that is
+        believed to be elsewhere than it is swings (guessing where it went on to makes it worse).
+
+        Args:
+            shift_ns: how much later than an image's capture time the encoders of its exposure are stamped.
+        """
         while self.sights and self.readings and self.readings[-1].capture_ns >= self.sights[0].capture_ns:
-            sight = self.sights.pop(0)
-            self.answered_ns = sight.capture_ns
-            yield sight, self._at(sight.capture_ns)
+            newest = self.sights.pop(0)
+            self.answered_ns = newest.capture_ns
+            sight = self._matched(newest, shift_ns)
+            yield newest.capture_ns, sight, self._at(min(sight.capture_ns + shift_ns, self.readings[-1].capture_ns))
+
+    def _matched(self, newest: Sight, shift_ns: int) -> Sight:
+        """The newest image whose encoders have been read; in the very beginning the newest of all."""
+        if shift_ns <= 0:
+            return newest
+        self.held = [*self.held[-SIGHTS:], newest]
+        known = [sight for sight in self.held if sight.capture_ns + shift_ns <= self.readings[-1].capture_ns]
+        if not known:
+            return newest
+        self.held = [sight for sight in self.held if sight.capture_ns >= known[-1].capture_ns]
+        return known[-1]
 
     def _at(self, time_ns: int) -> Reading:
         """Encoders at a time not after the newest reading, interpolated between the two around it."""
