@@ -32,6 +32,7 @@ TURN_RATE = Annotated[float | None, typer.Option(help="Turn rate of the actions,
 SPEED = Annotated[float | None, typer.Option(help="Speed of the actions, m/s.")]
 DELAY = Annotated[int, typer.Option(help="Sampling periods from a percept to its command.")]
 GRIPPER = Annotated[float | None, typer.Option(help="Gripper ahead of the axle, m, for --goal dock.")]
+NEURAL = Annotated[bool, typer.Option("--neural", help="schools: a neural learner too; needs the extra `neural`.")]
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
 
@@ -49,10 +50,13 @@ def experiment(
     speed_mps: SPEED = None,
     delay_samples: DELAY = 0,
     gripper_m: GRIPPER = None,
+    neural: NEURAL = False,
     as_json: JSON = False,
 ) -> None:
     """Run an experiment, or what is left of it; write CSV and pictures. Example: berth experiment ceiling."""
     _check(minutes, plant_noise, goal, turn_rate_dps, speed_mps, delay_samples, gripper_m)
+    if neural and name != "schools":
+        raise ConfigurationError(f"--neural belongs to schools; got experiment {name!r}")
     from rich.console import Console  # noqa: PLC0415  heavy: imported when called
 
     from docking.angles import DEG  # noqa: PLC0415
@@ -69,6 +73,7 @@ def experiment(
         speed_mps=speed_mps,
         delay_samples=delay_samples,
         gripper_m=gripper_m,
+        neural=neural,
     )
     console, began = Console(stderr=True), time.monotonic()
     outcome = run_campaign(load(name), options, output, backend=backend, workers=jobs, console=console)

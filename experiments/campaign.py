@@ -58,6 +58,8 @@ class Options:
     """Sampling periods between a percept and the command that answers it."""
     gripper_m: float | None = None
     """Gripper ahead of the axle, for `--goal dock`."""
+    neural: bool = False
+    """The neural learner too (`schools`)."""
 
     def seeds_or(self, count: int) -> tuple[int, ...]:
         """The seeds asked for, or 0 .. count - 1."""

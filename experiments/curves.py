@@ -33,9 +33,9 @@ from experiments.training import Training
 NAME = "curves"
 CEILING = "ceiling"
 SEEDS = 20
-_FIRST = (1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
-_LATER = (80.0, 120.0, 200.0, 300.0, 450.0, 600.0)
-_LATE = (1000.0, 1500.0, 2000.0, 3000.0)
+_FIRST = (2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0)
+_LATER = (120.0, 300.0, 600.0)
+_LATE = (1200.0, 2000.0, 3000.0)
 _LONG: Mapping[tuple[str, str], tuple[float, ...]] = {
     ("geometric", "RL"): _FIRST + _LATER,
     ("geometric", "RL, motion model"): _FIRST + _LATER,
@@ -148,11 +148,18 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
                 panel.axhline(row.controllable_percent, color="k", lw=1.0, ls="--", label=CEILING)
             for number, name in enumerate(LEARNERS):
                 band(panel, *curve(chosen, name), name, f"C{number}")
-            panel.set(xscale="log", xlabel="robot minutes", ylim=(0, 100), title=f"{experiment}, {plant}")
+            panel.set(xscale="log", xlabel="robot time, minutes", ylim=(0, 100), title=f"{experiment}, {plant}")
         axes[0].set_ylabel("controllable cells, %")
-        axes[0].legend(loc="upper left", fontsize=7)
+        legend_below(axes[0])
 
-    return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=3)]
+    return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=3, height_in=4.6)]
+
+
+def legend_below(panel: Axes) -> None:
+    """A legend of this panel's lines below the whole figure."""
+    figure = panel.get_figure(root=True)
+    if figure is not None:
+        figure.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 
 Line = NDArray[np.float64]

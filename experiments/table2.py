@@ -139,14 +139,16 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
 
     def paint(axes: list[Axes]) -> None:
         for plant, panel in zip(PLANTS, axes, strict=True):
-            names = _names(rows, plant)
+            names = [name for name in _names(rows, plant) if name != CEILING]
+            for row in select(rows, experiment=NAME, plant=plant, controller=CEILING, start_distance_m=None):
+                panel.axvline(row.controllable_percent, color="k", ls="--", lw=1.0, label=CEILING)
             shares = [_share(rows, plant, name) for name in names]
             panel.barh(names, [s.mean for s in shares], xerr=[np.nan_to_num(s.half_width) for s in shares], color="C0")
             known = [(PAPER[name][0], name) for name in names if name in PAPER and plant == "printed"]
             panel.plot([x for x, _ in known], [y for _, y in known], "D", color="C3", label="the paper")
             panel.invert_yaxis()
             panel.set(title=plant, xlabel="controllable cells, %", xlim=(0, 100))
-        axes[1].legend(loc="lower right")
+        axes[1].legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2)
 
     return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=2)]
 

@@ -46,6 +46,8 @@ class Protocol:
     """A greedy trial asks the teacher in cells without a known action; otherwise it explores there."""
     explore: float = 0.0
     """Share of random actions in the trials of `lc`, `greedy` and `optimist`."""
+    explore_minutes: float = 0.0
+    """That share falls linearly to nothing until then; 0: it stays."""
     reverse_s: float = 10.0
     """Robot time that driving back costs."""
     plant_noise: float = 0.0
@@ -141,7 +143,7 @@ class Training:
             self._start(),
             self._table(controller),
             self._actions,
-            0.0 if controller == "random" else protocol.explore,
+            0.0 if controller == "random" else self._explore(),
             self.settings.adjoining_cells,
             self.settings.hold_periods,
             protocol.plant == "printed",
@@ -154,6 +156,10 @@ class Training:
             self.rng,
         )
         return rows, int(samples), bool(reached)
+
+    def _explore(self) -> float:
+        share, until_s = self.protocol.explore, 60.0 * self.protocol.explore_minutes
+        return share * max(0.0, 1.0 - self.robot_s / until_s) if until_s > 0.0 else share
 
     def _controller(self) -> str:
         protocol = self.protocol
