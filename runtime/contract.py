@@ -88,6 +88,8 @@ Input = Port | Tick | Peers | Stall
 class DeviceKind:
     """One thing of the world that a component can be given: an entry of its ports' table `DEVICES`.
 
+    An entry None is a kind that another component of the system plays: the input `device` is wired to it.
+
     The launch file chooses it with `device = { kind = "NAME", ... }`. The live shell opens it, reads it on a thread of
     its own, publishes each reading on the component's output `device` and hands it over on the input `device`, so that
     it is in the log and a replay needs no device. What `handle` says on the output `actuate` is written to it.

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, cast
 
 from runtime.contract import Device, DeviceKind
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
 
-SIMULATED = "simulator"
-"""The kind that is no device: the input `device` is wired to a component of the same system."""
+
+@dataclass(frozen=True)
+class _Nothing:
+    """Parameters of what has none."""
 
 
 def kind_of(spec: ComponentSpec) -> DeviceKind | None:
     """The device that a component is to be given; None for one that has none or a simulated one."""
-    return kinds(spec.run).get(str(spec.device.get("kind", SIMULATED)))
+    return kinds(spec.run).get(str(spec.device.get("kind")))
 
 
-def kinds(run: str) -> Mapping[str, DeviceKind]:
-    """The devices that a component knows."""
-    return cast("Mapping[str, DeviceKind]", getattr(ports_of(run), "DEVICES", {}))
+def kinds(run: str) -> Mapping[str, DeviceKind | None]:
+    """The devices that a component knows; None = a kind that another component of the system plays, over the bus."""
+    return cast("Mapping[str, DeviceKind | None]", getattr(ports_of(run), "DEVICES", {}))
 
 
 def checked_device(run: str, table: Mapping[str, Any], where: str) -> Mapping[str, Any]:
@@ -30,12 +33,13 @@ def checked_device(run: str, table: Mapping[str, Any], where: str) -> Mapping[st
     Raises:
         ConfigurationError: an unknown kind or key, a broken rule.
     """
-    if not table or table.get("kind") == SIMULATED:
+    if not table:
         return table
     known, name = kinds(run), table.get("kind")
     if not isinstance(name, str) or name not in known:
-        raise ConfigurationError(f"{where}.kind must be one of {', '.join([*known, SIMULATED])}; got {name!r}")
-    build(known[name].params, _without_kind(table), where)
+        raise ConfigurationError(f"{where}.kind must be one of {', '.join(known) or 'none'}; got {name!r}")
+    kind = known[name]
+    build(_Nothing if kind is None else kind.params, _without_kind(table), where)
     return table
 
 
@@ -48,8 +52,8 @@ def check_clock(system: System) -> None:
     for spec in system.here:
         if system.clock == "lockstep" and kind_of(spec) is not None:
             raise ConfigurationError(
-                f"{system.file}: {spec.name}.device must be {SIMULATED!r} in lockstep, the world keeps its own time "
-                f"(--clock real); got {spec.device['kind']!r}"
+                f"{system.file}: {spec.name}.device must not be {spec.device['kind']!r} in lockstep: the world waits "
+                "for nobody (--clock real)"
             )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from docking.angles import DEG
-from runtime.contract import Input, Kind, Peers, Port, Tick
+from runtime.contract import DeviceKind, Input, Kind, Peers, Port, Tick
 from runtime.params import between, one_of, positive, scale
 from schemas.drive_pb2 import Applied, BaseCommand, BaseState, Drive
 
@@ -67,6 +67,7 @@ class Params:
     """Components whose death stops the robot, until a frame captured after it is answered."""
 
 
+DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None}
 INPUTS: Mapping[str, Input] = {
     "teleop": Port(Drive, Kind.COMMAND, optional=True),
     "grasper": Port(Drive, Kind.COMMAND, hz=8, optional=True, per_frame=True),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from docking.angles import DEG
-from runtime.contract import Input, Kind, Port
+from runtime.contract import DeviceKind, Input, Kind, Port
 from runtime.params import between, positive, scale
 from schemas.head_pb2 import HeadCommand, HeadState
 
@@ -35,6 +35,7 @@ class Params:
     """Radians down for 1 of the device's encoder."""
 
 
+DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None}
 INPUTS: Mapping[str, Input] = {
     "aim": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True),
     "device": Port(HeadState, Kind.STATE, hz=8, per_frame=True),

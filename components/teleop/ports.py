@@ -66,7 +66,7 @@ class Gamepad:
 KEYS = """q w e / u i o or arrow up: ahead   a d / j l or arrows: turn   z s c / m , . or arrow down: back
 hold to drive; any other key: stop   p: to the pilot   t: take   + -: speed   space: dead-man alone"""
 _KEYBOARD, _GAMEPAD = "components.teleop.devices.keyboard:Terminal", "components.teleop.devices.gamepad:Joystick"
-DEVICES = {
+DEVICES: Mapping[str, DeviceKind] = {
     "keyboard": DeviceKind(_KEYBOARD, Keyboard, terminal=True, usage=KEYS),
     "gamepad": DeviceKind(_GAMEPAD, Gamepad, usage="hold the dead-man button to drive"),
 }

@@ -130,6 +130,7 @@ def test_the_way_back_is_the_length_of_the_arc_whatever_its_direction(heading, v
 )
 def test_without_a_held_key_the_pilot_does_not_move_what_needs_one(need, command, moves):
     v, omega, commander = told(base(dead_man=need), FREE, command)
+    assert told(base(dead_man=need), FREE, command, ms=100)[2] == commander, "in the first moment too"
     assert ((v, omega) != (0.0, 0.0)) == moves
     assert commander == ("pilot" if moves else "dead-man")
 

@@ -37,11 +37,12 @@ run = "components.recorder"
 @pytest.mark.parametrize(
     ("device", "words"),
     [
-        ('{ kind = "lines" }', "wheels.device.kind must be one of line, simulator; got 'lines'"),
-        ("{ baud = 1 }", "wheels.device.kind must be one of line, simulator; got None"),
+        ('{ kind = "lines" }', "wheels.device.kind must be one of line, played; got 'lines'"),
+        ("{ baud = 1 }", "wheels.device.kind must be one of line, played; got None"),
         ('{ kind = "line", baud = 0 }', "wheels.device.baud must be > 0; got 0"),
         ('{ kind = "line", speed = 1 }', "wheels.device.speed is unknown; known are port, baud"),
-        ('{ kind = ["line"] }', "wheels.device.kind must be one of line, simulator; got ['line']"),
+        ('{ kind = "played", baud = 1 }', "wheels.device.baud is unknown; known are "),
+        ('{ kind = ["line"] }', "wheels.device.kind must be one of line, played; got ['line']"),
     ],
 )
 def test_a_wrong_device_is_told_by_file_key_value_and_rule(tmp_path, device, words):
@@ -50,15 +51,15 @@ def test_a_wrong_device_is_told_by_file_key_value_and_rule(tmp_path, device, wor
     assert str(error.value) == f"{tmp_path / 'line.toml'}: {words}"
 
 
-def test_a_simulated_device_is_none(tmp_path):
-    spec = launch(tmp_path, '{ kind = "simulator" }', "lockstep").component("wheels")
+def test_a_device_that_another_component_plays_is_none(tmp_path):
+    spec = launch(tmp_path, '{ kind = "played" }', "lockstep").component("wheels")
     assert kind_of(spec) is None
     assert opened(spec, "") is None
 
 
 def test_a_device_in_lockstep_is_refused_by_name(tmp_path):
     check_clock(launch(tmp_path, '{ kind = "line" }'))
-    with pytest.raises(ConfigurationError, match=r"wheels.device must be 'simulator' in lockstep.*got 'line'"):
+    with pytest.raises(ConfigurationError, match=r"wheels\.device must not be 'line' in lockstep"):
         check_clock(launch(tmp_path, '{ kind = "line" }', "lockstep"))
 
 

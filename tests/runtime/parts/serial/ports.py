@@ -18,7 +18,7 @@ class Line:
     baud: int = positive(9600)
 
 
-DEVICES = {"line": DeviceKind("tests.runtime.parts.serial.line:Line", Line)}
+DEVICES = {"line": DeviceKind("tests.runtime.parts.serial.line:Line", Line), "played": None}
 INPUTS = {"device": Port(BaseCommand, Kind.STATE)}
 OUTPUTS = {
     "actuate": Port(BaseCommand, Kind.COMMAND, on=("device",)),
