@@ -18,6 +18,7 @@ from report.session import Session, read
 from runtime.mcap_items import Fault
 from runtime.recording import Recording, Topic
 
+_COMPLETE = "complete"
 _WIDTH = 140
 """Of the table where standard output is no terminal; no name is cut off in it."""
 FILE = Annotated[Path, typer.Argument(help="Recording (MCAP).")]
@@ -33,7 +34,7 @@ def info(file: FILE, as_json: JSON = False) -> None:
         sys.stdout.write(json.dumps({**found, "failed": failed, "topics": [vars(topic) for topic in topics]}) + "\n")
     else:
         _print(found, topics)
-    raise typer.Exit(GOOD if session.whole and not session.lost else LOSSY)
+    raise typer.Exit(GOOD if found["state"] == _COMPLETE else LOSSY)
 
 
 def numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
@@ -67,7 +68,7 @@ def _state(session: Session, topics: list[Topic]) -> str:
     if not session.whole:
         words.insert(0, "torn")
     words += [f"{topic.lost} lost on {topic.topic}" for topic in topics if topic.lost]
-    return "; ".join(words) or "complete"
+    return "; ".join(words) or _COMPLETE
 
 
 def _print(found: dict[str, object], topics: list[Topic]) -> None:

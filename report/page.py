@@ -115,8 +115,7 @@ def _summary(session: Session) -> str:
 
 
 def _paths(session: Session, training: list[Trial], evaluation: list[Trial]) -> Iterable[str]:
-    params = session.launch_params("simulator")
-    offset_m = float(params.get("edge_offset_m", 0.05))
+    offset_m = session.launch_number("simulator", "edge_offset_m", 0.05)
     views = []
     if training:
         views.append(pictures.plan_view(training[-40:], offset_m, "the last 40 training trials"))

@@ -29,7 +29,7 @@ def write(session: Session, comparison: Comparison, file: Path) -> None:
     _draw_camera(axes[0], session)
     evaluation = [trial for trial in session.trials if trial.phase == "EVALUATE"]
     docked = sum(trial.docked for trial in evaluation)
-    draw_paths(axes[1], evaluation, float(session.launch_params("simulator").get("edge_offset_m", 0.05)))
+    draw_paths(axes[1], evaluation, session.launch_number("simulator", "edge_offset_m", 0.05))
     axes[1].set_title(f"evaluation: {docked} of {len(evaluation)} docked")
     draw_policy(axes[2], session.policies[-1][1])
     axes[2].set_title("learned: turn left / right")

@@ -53,13 +53,14 @@ class Session:
     pictures: dict[str, bytes] = field(default_factory=dict)
     """Mode of the pilot -> the newest camera image in it."""
 
-    def launch_params(self, component: str) -> Mapping[str, Any]:
-        """Parameters of a component; empty if the session has none of that name."""
-        for spec in self.launch.get("components", ()):
-            if spec.get("name") == component:
-                params: Mapping[str, Any] = spec.get("params", {})
-                return params
-        return {}
+    def launch_number(self, component: str, name: str, default: float) -> float:
+        """A component's parameter; the default if the launch file, which may be anybody's, holds no such number."""
+        specs = self.launch.get("components")
+        for spec in specs if isinstance(specs, list) else ():
+            if isinstance(spec, dict) and spec.get("name") == component and isinstance(spec.get("params"), dict):
+                value = spec["params"].get(name)
+                return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
+        return default
 
 
 def read(file: Path) -> Session:

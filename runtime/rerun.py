@@ -9,7 +9,7 @@ from typing import Any
 
 from google.protobuf.message import DecodeError
 
-from runtime.contract import GONE, STOP, Event
+from runtime.contract import GONE, STOP, Event, Port
 from runtime.hosted import Hosted, Sample
 from runtime.journal import LOADED, Entry, entries
 from runtime.system import ComponentSpec
@@ -152,7 +152,11 @@ class Rerun:
     def _own_event(self, entry: Entry) -> Event | None:
         """An event that the shell made itself: a tick, a stall, a death, the stop."""
         port, _, name = entry.port.partition(":")
-        if port != STOP and port not in self._hosted.inputs:
+        declared = self._hosted.inputs.get(port)
+        if isinstance(declared, Port):
+            self._stop(f"the launch file wires nothing to {self._spec.name}.{port}")
+            return None
+        if port != STOP and declared is None:
             self._stop(f"{self._spec.name} has no input {entry.port!r}")
             return None
         message: Any = name if port == GONE else None

@@ -10,6 +10,7 @@ import pytest
 import typer
 
 from cli.info import info
+from report.page import write
 from report.session import read
 from runtime.findings import Examination
 from runtime.mend import mend
@@ -42,6 +43,27 @@ def test_every_component_says_again_what_it_said(name, component):
 @pytest.mark.parametrize("name", NAMES)
 def test_each_is_small(name):
     assert (FOLDER / f"{name}.mcap").stat().st_size < 2_000_000
+
+
+def test_a_file_that_ends_well_but_is_damaged_within_is_not_called_complete(tmp_path, capsys):
+    data = bytearray((FOLDER / "docking.mcap").read_bytes())
+    at = len(data) // 2
+    data[at : at + 64] = bytes(64)
+    (tmp_path / "spoilt.mcap").write_bytes(data)
+    with pytest.raises(typer.Exit) as end:
+        info(tmp_path / "spoilt.mcap", as_json=True)
+    assert end.value.exit_code == 3
+    assert json.loads(capsys.readouterr().out)["state"].startswith("byte ")
+
+
+@pytest.mark.parametrize("launch", [{"components": None}, {"components": ["a"]}, {"components": [{"params": None}]}])
+def test_a_report_needs_no_good_launch_file(tmp_path, launch):
+    file = rewritten(
+        FOLDER / "docking.mcap", tmp_path / "odd.mcap", lambda _, m: m, attach=lambda _: json.dumps(launch).encode()
+    )
+    assert read(file).launch_number("simulator", "edge_offset_m", 0.05) == 0.05
+    write(read(file), tmp_path / "odd.html")
+    assert (tmp_path / "odd.html").exists()
 
 
 @pytest.mark.parametrize("name", ["docking", "reverse", "lost"])

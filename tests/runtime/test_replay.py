@@ -190,6 +190,17 @@ def test_an_event_that_the_component_has_no_input_for_is_named(session, tmp_path
     assert "fickle has no input 'loaded snapshot 7'" in rebatched(session, tmp_path, rename).runs[0].words
 
 
+def test_an_input_that_the_launch_file_does_not_wire_is_named(session, tmp_path):
+    def unwire(text):
+        return text.replace(b'"image": "world/image"', b'"gone": "world/image"')
+
+    file = rewritten(session, tmp_path / "unwired.mcap", lambda _, message: message, attach=unwire)
+    report = again(file)
+    assert report.runs[0].words == "replayable until 0.000 s: the launch file wires nothing to fickle.image"
+    assert not report.differs
+    assert report.is_lossy
+
+
 def test_without_a_journal_nothing_can_be_replayed(session, tmp_path):
     file = rewritten(session, tmp_path / "bare.mcap", without("fickle/journal"))
     with pytest.raises(ConfigurationError, match="holds no journal of fickle"):
