@@ -55,6 +55,8 @@ class Eyes:
     def _spot(self, patch: Blob | None) -> Spot | None:
         if patch is None or patch.pixels < self._params.object_pixels_min * self._params.scale**2:
             return None
+        if patch.pixels < self._params.object_fill_min * patch.mask.size:
+            return None
         column, row = blob.median(patch)
         return Spot(column - self._middle, row - self._half, patch.pixels)
 
