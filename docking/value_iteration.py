@@ -100,13 +100,25 @@ def keep_line(line: Floats, best: Floats, goal: Floats, timed: bool) -> float:
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def sweep(
-    value: Floats, moves: Floats, axes: Axes, limits: Limits, timed: bool, dt: float, passes: int, settled: float
+    value: Floats,
+    moves: Floats,
+    axes: Axes,
+    limits: Limits,
+    timed: bool,
+    dt: float,
+    passes: int,
+    settled: float,
+    first: int = 0,
+    last: int = 1 << 30,
 ) -> float:
-    """Back up all nodes in place, each distance until it is `settled` or `passes` are done; the largest change."""
+    """Back up all nodes in place, each distance until it is `settled` or `passes` are done; the largest change.
+
+    Only the distances from index `first` to before `last`, so that a sweep can be cut into slices.
+    """
     beta, alpha, d = axes
     best, scratch = np.empty(len(beta)), np.empty((3, len(beta)))
     largest = 0.0
-    for i in range(len(d)):
+    for i in range(first, min(last, len(d))):
         for turn in range(passes):
             change = 0.0
             for count in range(len(alpha)):
@@ -152,3 +164,25 @@ def promises(times: Floats, axes: Axes, limits: Limits, landings: Floats, dt: fl
             onward = interpolated(times, axes, b, a, d)
             found[n, action] = promised(True, dt, goal_level(limits, b, a, d), sink_level(limits, b, a, d), onward)
     return found
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def fastest(times: Floats, moves: Floats, axes: Axes, limits: Limits, dt: float) -> NDArray[np.int8]:
+    """Index of the action that promises the least time at each node; -1 where none promises to arrive.
+
+    Returns:
+        [d nodes, alpha nodes, beta nodes].
+    """
+    beta, alpha, d = axes
+    chosen = np.full((len(d), len(alpha), len(beta)), -1, np.int8)
+    best, before, scratch = np.empty(len(beta)), np.empty(len(beta)), np.empty((3, len(beta)))
+    for i in range(len(d)):
+        for j in range(len(alpha)):
+            best[:] = LATE_S
+            for action in range(moves.shape[2]):
+                before[:] = best
+                lower(best, scratch, times, axes, moves[i, j, action], limits, True, dt)
+                for b in range(len(beta)):
+                    if best[b] < before[b]:
+                        chosen[i, j, b] = action
+    return chosen

@@ -17,6 +17,10 @@ EXPERIMENTS: Mapping[str, str] = {
     "curves": "experiments.curves",
     "ablation": "experiments.ablation",
     "schools": "experiments.schools",
+    "minutes": "experiments.minutes",
+    "minutes-two-speeds": "experiments.minutes_two_speeds",
+    "minutes-reverse": "experiments.minutes_reverse",
+    "minutes-changed": "experiments.minutes_changed",
 }
 """Name on the command line: module with `NAME`, `jobs`, `run` and `draw`."""
 

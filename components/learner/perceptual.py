@@ -1,0 +1,137 @@
+"""Our own learner: rates of the percept under a command, regressed from whole trials, and a plan made with them."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.learner.explorer import trusted_actions
+from components.learner.motion_memory import MotionMemory
+from components.learner.planner import Planner, axes_of
+from components.learner.structure import STRUCTURES
+from docking.grid_policy import GridPolicy
+from docking.levels import Limits
+from docking.policy import UNKNOWN
+from docking.rates import RateModel
+
+Floats = NDArray[np.float64]
+Actions = tuple[tuple[float, float], ...]
+LONGEST_STRETCH = 200
+"""Frames; 25 s. A longer way is learned from in parts."""
+
+
+@dataclass(frozen=True)
+class Planning:
+    """How finely is planned, and how much is trusted."""
+
+    method: str = "structure-given"
+    """Key of `components.learner.structure.STRUCTURES`."""
+    period_s: float = 0.125
+    angle_step_rad: float = 0.026
+    """Spacing of the grid's nodes in beta and alpha."""
+    d_share: float = 0.107
+    """Spacing of the grid's nodes in d, as a share of the goal's distance."""
+    memory_s: float = 600.0
+    """Time constant of forgetting."""
+    surprise: float = 9.0
+    """A stretch of frames whose mean square error is so many times the expected one makes it forget what was before."""
+    trust_per_s: float = 0.03
+    """Standard deviation of the rates, in rad/s and shares of the distance per second, up to which they are trusted."""
+    replan_per_s: float = 0.002
+    """No new plan is made for rates that differ by less, rad/s and camera heights per second."""
+    explore: bool = True
+    """Where they are not trusted the least known action is tried if that is safe; else the linear controller drives."""
+
+
+class Seen(NamedTuple):
+    """One frame."""
+
+    state: tuple[float, float, float]
+    """beta, alpha (rad) relative to the goal, ln of the distance in camera heights."""
+    command: tuple[float, float]
+    """Executed from this frame on: m/s, rad/s."""
+
+
+class Perceptual:
+    """`feed` it every frame in order; `advance` lets it plan; `policy` is what came of it.
+
+    Frames in a row are one stretch; it ends where the robot changes between approaching and driving back, where the
+    object is not seen, and after `LONGEST_STRETCH` frames. Then it is learned from, and a new plan begins.
+    """
+
+    def __init__(self, planning: Planning, limits: Limits, actions: Actions) -> None:
+        self.planning, self.actions = planning, actions
+        self.memory = MotionMemory(STRUCTURES[planning.method], planning.period_s, planning.memory_s, planning.surprise)
+        axes = axes_of(limits, planning.angle_step_rad, planning.d_share * limits.gripper_m)
+        self.planner = Planner(limits, axes, np.array(actions), planning.period_s)
+        self.table = np.full(axes.shape, UNKNOWN, dtype=np.int8)
+        self._stretch: list[Seen] = []
+        self._stage = -1
+        self._unsure = True
+
+    def feed(self, seen: Seen | None, stage: int) -> bool:
+        """One frame, None where the object was not seen; the stage names the trial, or the way back.
+
+        Returns:
+            Whether so much was learned that a new plan has begun.
+        """
+        ends = seen is None or stage != self._stage or len(self._stretch) >= LONGEST_STRETCH
+        learned = self.close() if ends else False
+        self._stage = stage
+        if seen is not None:
+            self._stretch.append(seen)
+        return learned
+
+    def close(self) -> bool:
+        """Learn from the stretch that is open; True if a new plan has begun."""
+        stretch, self._stretch = self._stretch, []
+        states = np.array([seen.state for seen in stretch]).reshape(-1, 3)
+        commands = np.array([seen.command for seen in stretch]).reshape(-1, 2)
+        learned = self.memory.learn(states, commands)
+        model = self.memory.model
+        if not learned or model is None or self._is_planned(model):
+            return False
+        self.planner.begin(model)
+        return True
+
+    def _is_planned(self, model: RateModel) -> bool:
+        """Whether the plan was made with nearly the same rates, and with none that were not trusted."""
+        if self.planner.model is None or self._unsure:
+            return False
+        change = self.planner.moves(1.0, model) - self.planner.moves(1.0)
+        return bool(np.abs(change).max() < self.planning.replan_per_s)
+
+    def advance(self, layers: int) -> bool:
+        """Plan on, by at most so many layers of the grid; True when a plan has just become complete."""
+        fit = self.memory.fit
+        if fit is None or not self.planner.busy or not self.planner.advance(layers):
+            return False
+        planning = self.planning
+        self.table, self._unsure = trusted_actions(self.planner, fit, planning.trust_per_s, explore=planning.explore)
+        return True
+
+    def policy(self, version: int = 0) -> GridPolicy | None:
+        """The newest complete plan, with the newest rates; None before the first."""
+        model = self.memory.model
+        if model is None or not (self.table != UNKNOWN).any():
+            return None
+        return GridPolicy(
+            axes=self.planner.axes,
+            action=self.table,
+            actions=self.actions,
+            model=model,
+            docking=self.planner.limits.docking,
+            version=version,
+            method=self.planning.method,
+            samples=self.memory.samples,
+            table_sha256=self.digest(),
+        )
+
+    def digest(self) -> bytes:
+        """SHA-256 of the table of actions and of the sums behind the rates."""
+        sums = b"".join(array.astype("<f8").tobytes() for array in self.memory.sums.arrays().values())
+        return hashlib.sha256(self.table.tobytes() + sums).digest()
