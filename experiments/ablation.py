@@ -121,7 +121,7 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
                 panel.barh(places + 0.4 * number, means, 0.4, xerr=halves, label=f"{model} model", color=f"C{number}")
             panel.set_yticks(places + 0.2, list(cases))
             panel.invert_yaxis()
-            panel.set(title=plant, xlabel="controllable cells, %", xlim=(0, 70))
+            panel.set(title=plant, xlabel="controllable cells, %", xlim=(0, 100))
         axes[1].legend(loc="lower center", bbox_to_anchor=(0.5, 1.05), ncols=2)
 
     return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=2, height_in=6.0)]

@@ -149,6 +149,7 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
             for number, name in enumerate(LEARNERS):
                 band(panel, *curve(chosen, name), name, f"C{number}")
             panel.set(xscale="log", xlabel="robot time, minutes", ylim=(0, 100), title=f"{experiment}, {plant}")
+            panel.xaxis.set_major_formatter("{x:g}")
         axes[0].set_ylabel("controllable cells, %")
         legend_below(axes[0])
 

@@ -36,7 +36,7 @@ SETTINGS: dict[str, Any] = {
     "batch_size": 128,
     "gamma": 0.99,
     "train_freq": 1,
-    "gradient_steps": 4,
+    "gradient_steps": 1,
     "target_update_interval": 250,
     "exploration_fraction": 0.25,
     "exploration_final_eps": 0.1,

@@ -151,6 +151,7 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
                 band(panel, *curve(chosen, name), name, f"C{number}")
             panel.set(xscale="log", xlabel="robot time, minutes", ylabel="controllable cells, %", title=plant)
             panel.set_ylim(0, 100)
+            panel.xaxis.set_major_formatter("{x:g}")
         legend_below(axes[0])
 
     return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=2, height_in=5.2)]

@@ -78,6 +78,14 @@ def test_easy_missions_begin_near_the_goal_and_end_anywhere():
     assert (late[:2] > 0.9 * np.array([TASK.beta_range_rad, TASK.alpha_range_rad])).all()
 
 
+@pytest.mark.parametrize(("robot_s", "share"), [(0.0, 0.8), (900.0, 0.6), (3600.0, 0.0), (9000.0, 0.0)])
+def test_the_share_of_random_actions_falls_linearly_to_none(robot_s, share):
+    training = Training(TASK, Settings(), Protocol(explore=0.8, explore_minutes=60.0), 0)
+    training.robot_s = robot_s
+    assert training._explore() == pytest.approx(share)
+    assert Training(TASK, Settings(), Protocol(explore=0.8), 0)._explore() == 0.8
+
+
 @pytest.mark.parametrize("wrong", [{"plant": "flat"}, {"cycle": ("magic",)}])
 def test_a_protocol_of_unknown_words_is_refused(wrong):
     with pytest.raises(ConfigurationError, match=r"protocol\."):
