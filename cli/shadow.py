@@ -10,7 +10,6 @@ from pathlib import Path
 from cli.policies import LEARNER, controller_and_file, pilot_of
 from runtime.params import ConfigurationError
 from runtime.system import ComponentSpec, System, params_of
-from runtime.wiring import check_wiring
 
 NAME = "shadow"
 
@@ -35,7 +34,6 @@ def with_shadow(system: System, policy: str) -> System:
     place = system.components.index(pilot) + 1
     components = (*system.components[:place], shadow, *system.components[place:])
     beside = dataclasses.replace(system, components=components)
-    check_wiring(beside)
     return dataclasses.replace(beside, text=_text(beside))
 
 
