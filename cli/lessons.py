@@ -47,6 +47,8 @@ class Lessons:
     checks: Sequence[SnapshotCheck]
     """Of each session by itself."""
     notes: Sequence[str]
+    is_lossy: bool
+    """Something of a session is missing."""
 
     @property
     def same(self) -> bool | None:
@@ -104,7 +106,8 @@ def learn(files: Sequence[Path], component: str, overrides: Sequence[str], *, co
         _check(recording, spec, session, lessons[0].learned if len(files) == 1 else None)
         for recording, spec, session in zip(recordings, specs, sessions, strict=True)
     ]
-    return Lessons(lessons, checks, list(_notes(files, specs, sessions, checks)))
+    notes = list(_notes(files, specs, sessions, checks))
+    return Lessons(lessons, checks, notes, is_lossy=any(session.missing for session in sessions))
 
 
 def _read(recording: Recording, spec: ComponentSpec) -> HandedOver:
@@ -160,7 +163,8 @@ def _notes(
 ) -> Iterator[str]:
     for file, spec, session, check in zip(files, specs, sessions, checks, strict=True):
         other = "" if spec.params == specs[0].params else "; recorded with other parameters than the first one"
-        yield f"{file}: {len(session.inputs)} messages in the order of the {session.order}{other}; {check.words}"
+        torn = f"; not all of it is there: {session.missing}" if session.missing else ""
+        yield f"{file}: {len(session.inputs)} messages in the order of the {session.order}{other}{torn}; {check.words}"
 
 
 def _lines(lessons: Sequence[Lesson]) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from cli.exit_codes import DIFFERENT, GOOD
+from cli.exit_codes import DIFFERENT, GOOD, LOSSY
 from runtime.one_thread import limit_threads
 from runtime.params import ConfigurationError
 
@@ -30,7 +30,7 @@ def relearn(
     no_comparison: NO_COMPARISON = False,
     as_json: JSON = False,
 ) -> None:
-    """Feed the learner from recordings; exit code 1 if the same parameters do not give the same tables.
+    """Feed the learner from recordings; exit code 1 if the same parameters do not give the same tables, 3 if something is missing.
 
     Example: berth relearn recordings/sim.mcap --set learner.sweeps=4 -o policy.bin, then
     berth run launch/sim.toml --set pilot.policy=policy.bin --set pilot.train_s=0.
@@ -48,7 +48,7 @@ def relearn(
         sys.stdout.write(json.dumps({"wall_s": round(time.monotonic() - began_s, 3), **report.table()}) + "\n")
     else:
         sys.stdout.write("".join(f"{line}\n" for line in report.lines()))
-    raise typer.Exit(DIFFERENT if report.same is False else GOOD)
+    raise typer.Exit(DIFFERENT if report.same is False else LOSSY if report.is_lossy else GOOD)
 
 
 def _write(output: Path, policy: bytes) -> None:

@@ -109,7 +109,9 @@ class Examination:
             self._note("session", "no metadata of a session of ours")
         if not launch:
             self._note("session", "no launch file")
-        specs = launch.get("components", ())
+        specs = launch.get("components")
+        if launch and not (isinstance(specs, list) and all(isinstance(s, dict) and s.get("name") for s in specs)):
+            self._note("session", "the launch file holds no list of components with names")
         for spec in specs if isinstance(specs, list) else ():
             if isinstance(spec, dict) and isinstance(spec.get("inputs"), dict) and not spec.get("tap"):
                 self._inputs[str(spec.get("name"))] = spec["inputs"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from google.protobuf.message import DecodeError
 
 from runtime.journal import entries
+from runtime.mcap_items import Fault
 from runtime.recording import Logged, Recording
 from runtime.system import ComponentSpec
 from runtime.window import SEQUENCE_MASK
@@ -26,6 +27,8 @@ class HandedOver:
     """Messages of the further topics that were asked for."""
     order: str = JOURNAL_ORDER
     """`journal`, or why the order of the file had to do."""
+    missing: str = ""
+    """What of the session can not be read or is not there, in words; empty = nothing that matters here."""
     restarted: bool = False
     """The component was started again within the session."""
 
@@ -40,8 +43,8 @@ def handed_over(recording: Recording, spec: ComponentSpec, others: Iterable[str]
     """
     ports = {key: port for port, key in spec.inputs.items()}
     journal_key, wanted = f"{spec.name}/journal", set(others)
-    found, journal = HandedOver(), []
-    for logged in recording.messages({*ports, *wanted, journal_key}):
+    found, journal, faults = HandedOver(), [], list[Fault]()
+    for logged in recording.messages({*ports, *wanted, journal_key}, faults):
         if logged.topic in ports:
             found.inputs.append((ports[logged.topic], logged))
         elif logged.topic == journal_key:
@@ -53,6 +56,10 @@ def handed_over(recording: Recording, spec: ComponentSpec, others: Iterable[str]
         found.inputs = _in_order(found.inputs, journal)
     except (ValueError, DecodeError) as reason:
         found.order = f"file ({reason})"
+        if journal and not found.restarted:
+            found.missing = str(reason)
+    if faults:
+        found.missing = f"byte {faults[0].offset}: {faults[0].words}"
     return found
 
 

@@ -99,6 +99,15 @@ def test_a_session_with_a_hole_is_not_accused_but_said_to_be_open(session, tmp_p
     assert "message 100 on percept is missing" in report.notes[0]
     assert "another hash than live, at policy version" in report.notes[0]
     assert "but the live learner's order is not known" in report.notes[0]
+    assert report.is_lossy
+
+
+def test_a_torn_session_is_learned_from_up_to_its_tear_and_said_to_be_torn(session, tmp_path):
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(session.read_bytes()[: session.stat().st_size * 2 // 3])
+    code, output = berth(relearn, torn, "--no-comparison")
+    assert code == 3
+    assert "not all of it is there: byte " in output
 
 
 def test_a_learner_that_was_started_again_is_checked_run_by_run(session, forged):

@@ -38,6 +38,11 @@ def test_an_identical_replay_is_0_and_says_how_much(session):
     assert output.splitlines()[-1] == f"identical: {FRAMES} of {FRAMES} outputs"
 
 
+def test_a_replay_that_compares_nothing_misses_nothing(session):
+    code, output = berth(replay, session, "--component", "fickle")
+    assert (code, len(output.splitlines())) == (0, 1)
+
+
 def test_a_difference_is_1_and_shown_with_time_and_sequence(session):
     code, output = berth(replay, session, "-c", "fickle", "--check", "--set", "fickle.gain=2")
     assert code == 1

@@ -45,6 +45,13 @@ def test_a_message_lost_at_the_end_is_missed_by_the_journal_alone(session, tmp_p
     assert found == {"journal": "fickle was handed message 39 of world/image, which is missing"}
 
 
+@pytest.mark.parametrize("specs", [b"null", b"3", b'["a"]', b'[{"run": "x"}]'])
+def test_a_launch_file_without_components_is_found(session, tmp_path, specs):
+    launch = b'{"realm": "a", "components": ' + specs + b"}"
+    file = rewritten(session, tmp_path / "odd.mcap", lambda _, message: message, attach=lambda _: launch)
+    assert examined(file) == {"session": "the launch file holds no list of components with names"}
+
+
 def test_messages_out_of_order_are_found(session, tmp_path):
     def back(topic, message):
         late = topic == "world/image" and message.sequence == 20
