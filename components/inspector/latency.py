@@ -15,7 +15,8 @@ from components.inspector.servo import Array, Track, response
 
 LONGEST_S = 0.4
 """Latencies up to this are found."""
-LAGS_S = np.arange(0.005, 0.1501, 0.005)
+LAGS_S = (0.005, 0.01, 0.02, 0.03, 0.045, 0.065, 0.1, 0.15)
+"""Tried first; then what lies between the neighbours of the best."""
 ENCODER_RAD, IMAGE_PX = 0.0008, 0.2
 """Expected errors of a reading and of the object's place: only their ratio matters."""
 
@@ -59,9 +60,12 @@ class Servos(NamedTuple):
 
 def fit(records: Records, servos: Servos, width_px: int) -> Fit:
     """The best of all lags to a millisecond, and the latencies that go with it."""
-    coarse = min((_at_lag(records, servos, width_px, lag) for lag in LAGS_S.tolist()), key=_cost)
-    fine = np.arange(max(coarse.lag_s - 0.004, 0.001), coarse.lag_s + 0.0041, 0.001)
-    return min((_at_lag(records, servos, width_px, lag) for lag in fine.tolist()), key=_cost)
+    best = min((_at_lag(records, servos, width_px, lag) for lag in LAGS_S), key=_cost)
+    for step_s in (0.008, 0.004, 0.002, 0.001):
+        beside = (best.lag_s - step_s, best.lag_s + step_s)
+        tried = [_at_lag(records, servos, width_px, lag) for lag in beside if lag > 0.0]
+        best = min((best, *tried), key=_cost)
+    return best
 
 
 def _cost(found: Fit) -> float:
@@ -78,10 +82,13 @@ def _at_lag(records: Records, servos: Servos, width_px: int, lag_s: float) -> Fi
         time_s = records.read_s - latency_s
         return _gain(np.column_stack((pan.at(time_s), tilt.at(time_s))), records.read_rad)
 
+    first_px = records.seen_px[0]
+    guess = np.array((width_px, -first_px[0] / width_px, first_px[1] / width_px), dtype=np.float64)
+
     def seen(latency_s: float) -> tuple[float, float]:
         """(rms_px, focal_px)."""
         time_s = records.seen_s - latency_s
-        return _focal(pan.at(time_s), tilt.at(time_s), records.seen_px, width_px)
+        return _focal(pan.at(time_s), tilt.at(time_s), records.seen_px, guess)
 
     encoder_s, (encoder_rms, gain) = _best(read)
     camera_s, (image_rms, focal) = _best(seen)
@@ -105,9 +112,10 @@ def _gain(told_rad: Array, read_rad: Array) -> tuple[float, float]:
     return float(np.sqrt(np.mean((read - gain * told) ** 2))), gain
 
 
-def _focal(pan_rad: Array, tilt_rad: Array, seen_px: Array, width_px: int) -> tuple[float, float]:
+def _focal(pan_rad: Array, tilt_rad: Array, seen_px: Array, guess: Array) -> tuple[float, float]:
     """Focal length and direction of a resting object, Gauss-Newton: (rms_px, focal_px)."""
-    solution = np.array([float(width_px), float(-seen_px[0, 0] / width_px), float(seen_px[0, 1] / width_px)])
+    limits_px = 0.1 * guess[0], 10.0 * guess[0]
+    solution = guess.copy()
     for _ in range(4):
         rest = (seen_px - projected(solution, pan_rad, tilt_rad)).ravel()
         columns = []
@@ -115,8 +123,8 @@ def _focal(pan_rad: Array, tilt_rad: Array, seen_px: Array, width_px: int) -> tu
             moved = solution.copy()
             moved[index] += step
             columns.append(((seen_px - projected(moved, pan_rad, tilt_rad)).ravel() - rest) / step)
-        solution = solution - np.linalg.lstsq(np.column_stack(columns), rest, rcond=None)[0]
-        solution[0] = min(max(solution[0], 0.1 * width_px), 10.0 * width_px)
+        solution -= np.linalg.lstsq(np.column_stack(columns), rest, rcond=None)[0]
+        solution[0] = min(max(solution[0], limits_px[0]), limits_px[1])
     rest = seen_px - projected(solution, pan_rad, tilt_rad)
     return float(np.sqrt(np.mean(rest**2))), float(solution[0])
 
