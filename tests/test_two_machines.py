@@ -18,7 +18,7 @@ from tests.machines import ROOT, Cable, two_machines
 pytestmark = pytest.mark.xdist_group("live")
 CUT_FRAMES = 24
 """Three seconds."""
-HOLE_FRAMES = 8
+HOLE_FRAMES = 6
 """Of a machine that is too busy for real time."""
 BACK_S = 3.0
 SLACK_S = 3.0
