@@ -47,6 +47,7 @@ def test_json_is_one_object_with_rows_and_files(tmp_path: Path, monkeypatch: pyt
         (["curves", "--plant-noise", "2"], "--plant-noise must be in"),
         (["curves", "--seeds", "x"], "--seeds must be a count"),
         (["nothing"], "experiment must be one of"),
+        (["table2", "--neural"], "--neural belongs to schools"),
     ],
 )
 def test_a_wrong_option_is_named(arguments: list[str], words: str, tmp_path: Path) -> None:
