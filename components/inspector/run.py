@@ -15,8 +15,8 @@ _ASTRAY = 0.3
 """The object may move by this share of the image's width: more than all motions together."""
 _DEEPER_PX = 6.0
 """Rows that the object may sink while the robot drives: 4 cm are two of them from 2 m, and four from 1.4 m."""
-_ENDING_FRAMES = 6
-"""At rest before the end is said."""
+_ENDING_FRAMES = 16
+"""Standing before the end is said: a base that was far too fast needs two seconds to brake."""
 
 
 class Wish(NamedTuple):
