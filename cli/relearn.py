@@ -30,7 +30,7 @@ def relearn(
     no_comparison: NO_COMPARISON = False,
     as_json: JSON = False,
 ) -> None:
-    """Feed the learner from recordings; exit code 1 if the same parameters do not give the same tables, 3 if something is missing.
+    """Feed the learner from recordings; exit code 1: the same parameters give other tables, 3: something is missing.
 
     Example: berth relearn recordings/sim.mcap --set learner.sweeps=4 -o policy.bin, then
     berth run launch/sim.toml --set pilot.policy=policy.bin --set pilot.train_s=0.
