@@ -23,6 +23,7 @@ FINISHED = "finished"
 """The inspector's reason when it came to its end."""
 LONGEST_S, SILENCE_S = 120.0, 30.0
 """Session time after which a stage is given up, and wall time without a frame."""
+_TOO_SLOW = f"not at its end after {LONGEST_S:g} s: frames come too slowly"
 _KEPT = ("components.simulator", "components.camera", "components.vision", "components.head", "components.base")
 _BEGINS = {"facing": "facing", "head": "facing", "fingertips": "fingertips"}
 _TILT_BELOW_RAD = 0.09
@@ -154,7 +155,8 @@ def _in_process(system: System, calls: Watch) -> str:
         engine.watch(key, call)
     try:
         with on_signal(lambda: engine.stop("interrupted")):
-            return engine.run(LONGEST_S)
+            reason = engine.run(LONGEST_S)
+            return _TOO_SLOW if reason == "duration" else reason
     except ComponentError as error:
         return str(error)
 
@@ -174,7 +176,7 @@ def _on_bus(system: System, calls: Watch) -> str:
             if time.monotonic() - heard_s > SILENCE_S:
                 supervisor.stop_soon(f"no frame for {SILENCE_S:g} s")
             if newest_ns > LONGEST_S * 1e9:
-                supervisor.stop_soon("duration")
+                supervisor.stop_soon(_TOO_SLOW)
         supervisor.stop()
     _hand_out(calls, waiting)
     return supervisor.end_reason
