@@ -141,4 +141,4 @@ def test_the_eyes_alone_show_the_goal_and_it_is_the_default_one_for_a_camera_on_
     again = json.loads(
         teach("--from", table["from"], "--at", table["at_s"], "--frames", 16, "-o", tmp_path / "again.toml", "--json")
     )
-    assert again["mean"] == table["mean"]
+    assert again["mean"] == pytest.approx(table["mean"], abs=0.002)  # a busy bus may drop a percept for either listener
