@@ -128,7 +128,7 @@ class Event(NamedTuple):
     """One call of `handle`."""
 
     time_ns: int
-    """Session time at hand-over; never decreases, never before `capture_ns`."""
+    """Session time at hand-over; never decreases, never before `capture_ns` unless another host's clock says that."""
     port: str
     """Input port, or `tick`, `gone`, `stall`, `stop`."""
     message: Any = None
