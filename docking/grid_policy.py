@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from docking.arrays import pack, unpack
-from docking.policy import UNKNOWN
 from docking.rates import RateModel
 
 Floats = NDArray[np.float64]
 
+UNKNOWN = -1
+"""Action of a node that nothing is known about."""
 LARGEST_NODES = 4_000_000
 """More is refused."""
 _KIND = "grid policy"

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from docking import grid_policy
 from docking.arrays import pack, unpack
 from docking.cells import SINK, Grid
+from docking.grid_policy import GridPolicy
 
-UNKNOWN = -1
+UNKNOWN = grid_policy.UNKNOWN
 """Action of a cell that the learner knows nothing about."""
 LARGEST_CELLS = 1001
 """Along one axis; more is refused."""
@@ -55,6 +57,8 @@ class PolicyTable:
     """That entered the model so far."""
     table_sha256: bytes = field(default=b"")
     """Of the learner's whole value table."""
+    fine: GridPolicy | None = None
+    """The policy that knows the distance too; the cells are then its picture at one distance."""
 
     def __post_init__(self) -> None:
         grid = self.grid
@@ -113,7 +117,10 @@ class PolicyTable:
             "transitions": self.transitions,
             "table_sha256": self.table_sha256.hex(),
         }
-        return pack(_KIND, header, {"action": self.action, "value": self.value})
+        arrays: dict[str, NDArray[Any]] = {"action": self.action, "value": self.value}
+        if self.fine is not None:
+            arrays["fine"] = np.frombuffer(self.fine.to_bytes(), dtype=np.int8)
+        return pack(_KIND, header, arrays)
 
     @staticmethod
     def from_bytes(data: bytes) -> PolicyTable:
@@ -133,6 +140,7 @@ class PolicyTable:
                 method=str(header["method"]),
                 transitions=int(header["transitions"]),
                 table_sha256=bytes.fromhex(header["table_sha256"]),
+                fine=GridPolicy.from_bytes(arrays["fine"].tobytes()) if "fine" in arrays else None,
             )
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"policy is incomplete or mistyped: {error!r}") from error

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from docking.actions import ACTION_SETS, action_set
 from docking.angles import DEG
 from docking.camera_offset import CameraOffset
 from runtime.params import ConfigurationError, between, odd, one_of, positive
@@ -39,6 +40,9 @@ class Task:
     """The one translational speed. Section VI."""
     turn_rate_radps: float = positive(10 * DEG)
     """Actions are +- this. Table I, simulation."""
+    action_set: str = one_of("one-speed", *ACTION_SETS)
+    """`one-speed`: the paper's two turn rates at one speed; `two-speeds`: also at half the speed; `reverse`: also
+    backwards at the same speed. The paper's future work."""
     goal_slope: float = between(0.0, -20.0, 20.0)
     """Slope of the table edge in the image when the object can be picked up."""
     goal_pan_rad: float = between(0.0, -math.pi, math.pi)
@@ -61,8 +65,8 @@ class Task:
 
     @property
     def actions(self) -> tuple[tuple[float, float], ...]:
-        """(v_mps, omega_radps) of each action: 0 turns left, 1 turns right. Mirroring swaps them."""
-        return ((self.speed_mps, self.turn_rate_radps), (self.speed_mps, -self.turn_rate_radps))
+        """(v_mps, omega_radps) of each action: even ones turn left, odd ones right. Mirroring swaps them."""
+        return action_set(self.action_set, self.speed_mps, self.turn_rate_radps)
 
     def __post_init__(self) -> None:
         """Check what no single field shows."""

@@ -16,11 +16,10 @@ from components.pilot.ports import Params
 from components.pilot.progress import Start
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
-from docking.grid_policy import GridPolicy
+from docking.grid_policy import UNKNOWN, GridPolicy
 from docking.levels import Limits, judge
 from docking.linear import BEST_TUNED, Linear
 from docking.percept_filter import PerceptFilter
-from docking.policy import UNKNOWN
 from experiments.problem import GRIPPER_M, Problem
 from experiments.robot import HEIGHT_M, Drivetrain, Robot, poses_of
 from experiments.starts import D_MIN_M

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from docking import actions
+from docking.actions import ACTION_SETS, Actions
 from docking.angles import DEG
 from docking.levels import Limits
 from docking.score import DOCKED_M, DOCKED_RAD
@@ -15,11 +17,6 @@ from experiments.starts import D_MIN_M, DISTANCES_M, SAMPLING_S
 from runtime.params import ConfigurationError
 
 Floats = NDArray[np.float64]
-Actions = tuple[tuple[float, float], ...]
-"""(v_mps, omega_radps) of each."""
-
-ACTION_SETS = ("one-speed", "two-speeds", "reverse")
-"""The paper's two turn rates at one speed; also at half the speed; also backwards."""
 PLANTS = ("geometric", "printed")
 GOALS = ("cell", "dock")
 GRIPPER_M = 0.28
@@ -29,15 +26,14 @@ _REVERSE_ROOM_M = 0.6
 
 
 def action_set(name: str, speed_mps: float, turn_rate_radps: float) -> Actions:
-    """Actions of a set, for a speed and a turn rate.
+    """`docking.actions.action_set`, for a name that comes from outside.
 
     Raises:
         ConfigurationError: no such set.
     """
     if name not in ACTION_SETS:
         raise ConfigurationError(f"actions must be one of {', '.join(ACTION_SETS)}; got {name!r}")
-    speeds = {"one-speed": (1.0,), "two-speeds": (1.0, 0.5), "reverse": (1.0, -1.0)}[name]
-    return tuple((share * speed_mps, sign * turn_rate_radps) for share in speeds for sign in (1.0, -1.0))
+    return actions.action_set(name, speed_mps, turn_rate_radps)
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from docking.actions import Actions
 from docking.angles import DEG
-from experiments.problem import GRIPPER_M, Actions
+from experiments.problem import GRIPPER_M
 
 Floats = NDArray[np.float64]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,9 +13,13 @@ from components.learner.frame import Frame, Progress, action_of, percept_of
 from components.learner.holding import Holding
 from components.learner.join import Join
 from components.learner.methods import make_method
+from components.learner.methods.perceptual import PerceptualMethod
+from components.learner.methods.tabular import Tabular
+from components.learner.settings import PERCEPTUAL
 from components.learner.transition import Transition
 from docking.arrays import pack, unpack
 from docking.cells import Grid
+from docking.grid_policy import GridPolicy
 from runtime.contract import STOP, Event, Output
 from schemas.policy_pb2 import Policy
 from schemas.session_pb2 import Snapshot
@@ -38,8 +43,7 @@ class Learner:
         del seed  # nothing is random here
         self._params = params
         self._grid = Grid.of(params.task)
-        self._method = make_method(params.task, params)
-        self._method.plan()  # compiles; of nothing it learns nothing
+        self._method = _method_of(params)
         self._join = Join(params.join_frames)
         self._holding = Holding(params, self._grid)
         self._version = 0
@@ -94,20 +98,21 @@ class Learner:
         elif event.port == "applied":
             action = action_of(self._params, message.v_mps, message.omega_radps)
             self._join.add(capture_ns, "action", action)
+            self._join.add(capture_ns, "command", (message.v_mps, message.omega_radps))
 
     def _learn(self, frame: Frame) -> Iterator[Output]:
-        counted = [self._improve(transition) for transition in self._holding.feed(frame)]
-        if any(counted):
+        if self._improve(frame):
             self._version += 1
             yield Output("policy", self._policy(), frame.capture_ns)
         if self._is_due(frame.progress):
             yield from self._snapshot(frame.capture_ns)
 
-    def _improve(self, transition: Transition) -> bool:
-        counts = self._method.observe(transition)
-        if counts:
-            self._method.plan()
-        return counts
+    def _improve(self, frame: Frame) -> bool:
+        """Whether the policy may have changed."""
+        if isinstance(self._method, PerceptualMethod):
+            return self._method.feed(frame)
+        counted = [_observed(self._method, transition) for transition in self._holding.feed(frame)]
+        return any(counted)
 
     def _is_due(self, progress: Progress) -> bool:
         """Whether enough trials have ended since the last snapshot, or the training just has."""
@@ -134,6 +139,7 @@ class Learner:
             transitions=table.transitions,
             action_v_mps=[v for v, _ in table.actions],
             action_omega_radps=[omega for _, omega in table.actions],
+            fine=None if table.fine is None else _fine(table.fine),
         )
 
     def _snapshot(self, capture_ns: int | None = None) -> Iterator[Output]:
@@ -142,6 +148,40 @@ class Learner:
             self._kept_version = self._version
             snapshot = Snapshot(version=self._version, table_sha256=self._method.digest(), state=self.save())
             yield Output("snapshot", snapshot, capture_ns)
+
+
+def _method_of(params: ports.Params) -> Tabular | PerceptualMethod:
+    if params.method in PERCEPTUAL:
+        return PerceptualMethod(params.task, params, params.sampling_period_s)
+    method = make_method(params.task, params)
+    method.plan()  # compiles; of nothing it learns nothing
+    return method
+
+
+def _observed(method: Tabular, transition: Transition) -> bool:
+    counts = method.observe(transition)
+    if counts:
+        method.plan()
+    return counts
+
+
+def _fine(policy: GridPolicy) -> Policy.Fine:
+    axes, model = policy.axes, policy.model
+    return Policy.Fine(
+        beta_range_rad=axes.beta_range_rad,
+        alpha_range_rad=axes.alpha_range_rad,
+        d_min=axes.d_min,
+        d_max=axes.d_max,
+        beta_nodes=axes.beta_nodes,
+        alpha_nodes=axes.alpha_nodes,
+        d_nodes=axes.d_nodes,
+        action_zlib=zlib.compress(policy.action.tobytes(), 6),
+        docking=policy.docking,
+        functions=model.functions,
+        theta=model.theta.ravel(),
+        delay_samples=model.delay_samples,
+        noise=model.noise,
+    )
 
 
 def _progress(trial: Any) -> Progress:

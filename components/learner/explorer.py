@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from components.learner.planner import Planner
 from components.learner.regression import Fit
 from docking.angles import DEG
-from docking.policy import UNKNOWN
+from docking.grid_policy import UNKNOWN
 from docking.rates import FUNCTIONS
 
 Floats = NDArray[np.float64]

@@ -24,6 +24,8 @@ class Percept(NamedTuple):
     alpha_rad: float
     too_close: bool
     """Beyond the tilt limit."""
+    tilt_rad: float = 0.0
+    """Not relative to the goal's."""
 
 
 class Progress(NamedTuple):
@@ -47,6 +49,8 @@ class Frame(NamedTuple):
     progress: Progress
     action: int
     """Index of the action that was executed, or UNKNOWN_ACTION."""
+    command: tuple[float, float] = (0.0, 0.0)
+    """What was executed, m/s and rad/s."""
 
 
 def frame_of(row: list[Any]) -> Frame:
@@ -55,8 +59,18 @@ def frame_of(row: list[Any]) -> Frame:
     Raises:
         TypeError, ValueError: it is nothing of the kind.
     """
-    capture_ns, percept, progress, action = row
-    return Frame(int(capture_ns), Percept(*percept), Progress(*progress), int(action))
+    capture_ns, percept, progress, action, command = row
+    return Frame(int(capture_ns), Percept(*percept), Progress(*progress), int(action), command_of(command))
+
+
+def command_of(pair: list[Any]) -> tuple[float, float]:
+    """Speed and turn rate out of a list.
+
+    Raises:
+        TypeError, ValueError: it is nothing of the kind.
+    """
+    v_mps, omega_radps = pair
+    return float(v_mps), float(omega_radps)
 
 
 UNSEEN = Percept(visible=False, cell=SINK, beta_rad=0.0, alpha_rad=0.0, too_close=False)
@@ -74,6 +88,7 @@ def percept_of(params: Params, grid: Grid, visible: bool, slope: float, pan_rad:
         beta_rad=seen.beta_rad,
         alpha_rad=seen.alpha_rad,
         too_close=seen.too_close,
+        tilt_rad=seen.tilt_rad,
     )
 
 

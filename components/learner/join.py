@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from components.learner.frame import Frame, Percept, Progress
+from components.learner.frame import Frame, Percept, Progress, command_of
 
-_PARTS = 3
+_PARTS = 4
 
 
 @dataclass
@@ -25,8 +25,8 @@ class Join:
     waiting: dict[int, dict[str, Any]] = field(default_factory=dict)
     """By capture time: the parts so far."""
 
-    def add(self, capture_ns: int, part: str, value: Percept | Progress | int) -> None:
-        """Remember a part: `percept`, `progress` or `action`."""
+    def add(self, capture_ns: int, part: str, value: Percept | Progress | int | tuple[float, float]) -> None:
+        """Remember a part: `percept`, `progress`, `action` or `command`."""
         if capture_ns <= self.left_ns:
             return
         self.waiting.setdefault(capture_ns, {})[part] = value
@@ -60,6 +60,7 @@ class Join:
             "percept": lambda row: Percept(*row),
             "progress": lambda row: Progress(*row),
             "action": int,
+            "command": command_of,
         }
         waiting = {int(ns): {name: kinds[name](part) for name, part in parts.items()} for ns, parts in plain["waiting"]}
         self.left_ns, self.waiting = int(plain["left_ns"]), waiting

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,13 @@ class MotionMemory:
         self.samples += len(measured)
         self.fit = best_fit(self.sums, self.structures)
         return True
+
+    def take_over(self, sums: Mapping[str, NDArray[Any]], samples: int) -> None:
+        """Go on with sums that were saved; the fit follows from them."""
+        for name, own in self.sums.arrays().items():
+            own[...] = sums[name]
+        self.samples = samples
+        self.fit = best_fit(self.sums, self.structures) if samples > 0 else None
 
     def smooth(self, measured: Floats, commands: Floats) -> Floats:
         """The frames without their noise, as far as the model knows them; without a model by themselves."""

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.learner.explorer import trusted_actions
+from components.learner.model import checked
 from components.learner.motion_memory import MotionMemory
 from components.learner.planner import Planner, axes_of
 from components.learner.structure import STRUCTURES
-from docking.grid_policy import GridPolicy
+from docking.grid_policy import UNKNOWN, GridPolicy
 from docking.levels import Limits
-from docking.policy import UNKNOWN
 from docking.rates import RateModel
+from docking.value_iteration import LATE_S
 
 Floats = NDArray[np.float64]
 Actions = tuple[tuple[float, float], ...]
@@ -69,6 +71,7 @@ class Perceptual:
         axes = axes_of(limits, planning.angle_step_rad, planning.d_share * limits.gripper_m)
         self.planner = Planner(limits, axes, np.array(actions), planning.period_s)
         self.table = np.full(axes.shape, UNKNOWN, dtype=np.int8)
+        self.half_seconds = np.full(axes.shape, round(2 * LATE_S), dtype=np.int8)
         self._stretch: list[Seen] = []
         self._stage = -1
         self._unsure = True
@@ -111,6 +114,7 @@ class Perceptual:
         if fit is None or not self.planner.busy or not self.planner.advance(layers):
             return False
         planning = self.planning
+        self.half_seconds[...] = np.ceil(2.0 * np.minimum(self.planner.times_s, LATE_S))
         self.table, self._unsure = trusted_actions(self.planner, fit, planning.trust_per_s, explore=planning.explore)
         return True
 
@@ -131,7 +135,65 @@ class Perceptual:
             table_sha256=self.digest(),
         )
 
+    def to_plain(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Header and arrays for `docking.arrays.pack`."""
+        planned = self.planner.model
+        header = {
+            "stretch": [[*seen.state, *seen.command] for seen in self._stretch],
+            "stage": self._stage,
+            "unsure": self._unsure,
+            "samples": self.memory.samples,
+            "planner": self.planner.to_plain(),
+            "planned": None if planned is None else [planned.functions, planned.delay_samples, list(planned.noise)],
+        }
+        arrays: dict[str, NDArray[Any]] = {
+            **self.memory.sums.arrays(),
+            "table": self.table,
+            "half_seconds": self.half_seconds,
+        }
+        if planned is not None:
+            arrays["planned"] = planned.theta
+        if self.planner.busy:
+            arrays["times_s"] = self.planner.times_s
+        return header, arrays
+
+    def from_plain(self, header: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Take over what `to_plain` gave; on an error nothing is changed.
+
+        Raises:
+            ValueError: it is nothing of the kind; says why.
+        """
+        sums = {name: checked(arrays, name, own) for name, own in self.memory.sums.arrays().items()}
+        table = checked(arrays, "table", self.table)
+        half_seconds = checked(arrays, "half_seconds", self.half_seconds)
+        if not ((table >= UNKNOWN) & (table < len(self.actions))).all():
+            raise ValueError(f"table must be in -1..{len(self.actions) - 1}")
+        try:
+            stretch = [_seen(row) for row in header["stretch"]]
+            stage, unsure, samples = int(header["stage"]), bool(header["unsure"]), int(header["samples"])
+            planned = None if header["planned"] is None else _model(header["planned"], arrays)
+            place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
+        except (KeyError, TypeError, OverflowError) as error:
+            raise ValueError(f"learner state is incomplete or mistyped: {error!r}") from error
+        times_s = checked(arrays, "times_s", self.planner.times_s) if place["busy"] else self.planner.times_s
+        self.memory.take_over(sums, samples)
+        self.table, self.half_seconds = table, half_seconds
+        self._stretch, self._stage, self._unsure = stretch, stage, unsure
+        if planned is not None:
+            self.planner.restore(planned, times_s, place)
+
     def digest(self) -> bytes:
         """SHA-256 of the table of actions and of the sums behind the rates."""
         sums = b"".join(array.astype("<f8").tobytes() for array in self.memory.sums.arrays().values())
         return hashlib.sha256(self.table.tobytes() + sums).digest()
+
+
+def _seen(row: Any) -> Seen:
+    beta, alpha, log, v, omega = map(float, row)
+    return Seen((beta, alpha, log), (v, omega))
+
+
+def _model(described: Any, arrays: Mapping[str, NDArray[Any]]) -> RateModel:
+    functions, delay, noise = described
+    beta, alpha, log = map(float, noise)
+    return RateModel(str(functions), np.asarray(arrays["planned"], dtype=np.float64), float(delay), (beta, alpha, log))

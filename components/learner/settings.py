@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from docking.angles import DEG
 from runtime.params import between, not_negative, one_of, positive
+
+PERCEPTUAL = ("structure-given", "structure-learned")
+"""Methods that learn from percepts frame by frame, not from transitions between cells."""
 
 
 @dataclass(frozen=True)
 class Settings:
     """Parameters of the learning methods. Section numbers are of Martinez-Marin and Duckett 2005."""
 
-    method: str = one_of("memory-sweep", "memory-sweep", "prioritised", "q-learning", "advantage")
-    """Which of `components.learner.methods`."""
+    method: str = one_of("memory-sweep", "memory-sweep", "prioritised", "q-learning", "advantage", *PERCEPTUAL)
+    """Which of `components.learner.methods`. Ours regress how the percept moves and plan with it: `structure-given` is
+    told that the camera is on a rigid robot on a floor, `structure-learned` is told nothing. docs/method.md."""
     model: str = one_of("displacement", "displacement", "exits")
     """What the model's filter averages: the change of the continuous state, or which neighbouring cell was entered."""
     adjoining_cells: int = between(1, 1, 8)
@@ -43,6 +48,23 @@ class Settings:
     """Q of a (cell, action) never tried. 0 as in the paper; the goal's reward makes exploration optimistic."""
     advantage_scale: float = between(0.3, 0.01, 1.0)
     """Advantage learning only (Baird 1993): 1 is Q-learning; smaller spreads the values of actions apart."""
+    goal: str = one_of("dock", "dock", "cell")
+    """Ours only: what is planned for, the pick-up pose or the paper's goal cell at any distance."""
+    grid_angle_rad: float = between(1.5 * DEG, 0.2 * DEG, 10 * DEG)
+    """Ours only: spacing of the plan's nodes in beta and alpha. Finer gains nothing, 2 deg costs 2 points."""
+    grid_distance_share: float = between(0.107, 0.02, 1.0)
+    """Ours only: spacing of the plan's nodes in distance, as a share of the distance at the pick-up: 3 cm."""
+    layers_per_frame: int = between(16, 1, 1000)
+    """Ours only: layers of the plan's grid that are swept between two frames. One is at most 60 x 2 x 9,300 backups."""
+    memory_s: float = positive(600.0)
+    """Ours only: time constant of forgetting."""
+    surprise: float = positive(9.0)
+    """Ours only: motion whose mean square error is so many times the expected one makes it forget what was before."""
+    trust_per_s: float = positive(0.03)
+    """Ours only: rates (rad/s; share of the distance per second) known within this are trusted; else the linear
+    controller drives, or the least known action where that is safe."""
+    explore: bool = True
+    """Ours only: try the least known action."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from components.pilot.fine import is_there, steer_fine
 from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
@@ -37,11 +38,22 @@ def steer(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Si
         omega = rules.teacher.omega_radps(sight.beta_rad, sight.alpha_rad)
         progress = replace(progress, held=Held(controller="lc"))
         return progress, Wish(rules.task.speed_mps, omega, "lc")
+    if controller == "greedy" and table is not None and table.fine is not None:
+        return steer_fine(rules, table.fine, progress, sight)
     grid, cell = _cell(rules, table if controller == "greedy" else None, sight)
     if cell != progress.held.cell or rules.params.hold == "sample":
         progress = _choose(rules, table, progress, controller, grid, cell)
     held = progress.held
     return progress, Wish(held.v_mps, held.omega_radps, held.controller, held.action)
+
+
+def is_at_goal(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Sight) -> bool:
+    """Whether the approach is over: in the goal cell, or at the pick-up if the policy leads there itself."""
+    table = table_of(rules, table, progress)
+    greedy = controller_of(rules, progress) == "greedy" and progress.phase == Phase.EVALUATE
+    if greedy and table is not None and table.fine is not None and table.fine.docking:
+        return is_there(rules, sight)
+    return rules.grid.cell(sight.beta_rad, sight.alpha_rad) == rules.grid.goal
 
 
 def _cell(rules: Rules, table: PolicyTable | None, sight: Sight) -> tuple[Grid, int]:

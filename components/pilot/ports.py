@@ -59,6 +59,8 @@ class Params:
     """Whom greedy asks in a cell that the policy knows nothing about."""
     hold: str = one_of("cell", "cell", "sample")
     """An action is held until the cell changes (the paper's semi-Markov step), or for one sample."""
+    sampling_period_s: float = positive(0.125)
+    """Ts. By it a policy that knows the distance bridges the delay of its commands. Table I."""
     k_beta_per_s: float = 2.25
     """Gain of the linear law and teacher on beta. Best of a grid search on the geometric plant; by hand: 1.5."""
     k_alpha_per_s: float = 1.5

@@ -137,6 +137,8 @@ class Progress:
     """Random choices made in this trial: the next one's number in its stream."""
     start: Start = field(default_factory=Start)
     """Where the reverse shall end."""
+    sent: tuple[float, ...] = ()
+    """Speed and turn rate of the newest frames of this approach, m/s and rad/s by turns, the newest last."""
     turning: bool = False
     """The reverse has gone back far enough and turns on the spot."""
     seen_alpha_rad: float = 0.0

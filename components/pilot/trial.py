@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from components.pilot import diagnosis, reverse
-from components.pilot.choice import steer, table_of
+from components.pilot.choice import is_at_goal, steer, table_of
 from components.pilot.evidence import Evidence
 from components.pilot.progress import REST, Heard, Held, Mode, Outcome, Phase, Progress, Step, Wish
 from components.pilot.rules import NS, Rules
@@ -48,6 +48,7 @@ def begin(progress: Progress, time_ns: int, number: int) -> Progress:
         held=Held(),
         draws=0,
         turning=False,
+        sent=(),
         evidence=Evidence(),
     )
 
@@ -103,7 +104,7 @@ def _approach(rules: Rules, progress: Progress, frame: Frame) -> Step:
         return _wait(rules, replace(progress, mode=int(Mode.WAIT), mode_began_ns=frame.time_ns), frame)
     if sight.too_close:
         return _ended(progress, Outcome.SINK)
-    if rules.grid.cell(sight.beta_rad, sight.alpha_rad) != rules.grid.goal:
+    if not is_at_goal(rules, frame.table, progress, sight):
         return steer(rules, frame.table, progress, sight)
     progress = replace(progress, goal_reached=True)
     if progress.phase == Phase.TRAIN:

@@ -11,6 +11,7 @@ from components.learner.methods.q_learning import QLearning
 from components.learner.methods.tabular import Tabular
 from components.learner.settings import Settings
 from docking.task import Task
+from runtime.params import ConfigurationError
 
 METHODS: Mapping[str, type[Tabular]] = {
     "memory-sweep": MemorySweep,
@@ -22,5 +23,11 @@ METHODS: Mapping[str, type[Tabular]] = {
 
 
 def make_method(task: Task, settings: Settings) -> Tabular:
-    """The method that the settings name, knowing nothing yet."""
+    """The method of transitions that the settings name, knowing nothing yet.
+
+    Raises:
+        ConfigurationError: it is one of frames; see `methods.perceptual`.
+    """
+    if settings.method not in METHODS:
+        raise ConfigurationError(f"learner.method must be one of {', '.join(METHODS)} here; got {settings.method!r}")
     return METHODS[settings.method](task, settings)

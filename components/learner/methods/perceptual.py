@@ -1,0 +1,122 @@
+"""Our own methods as the component sees them: fed frame by frame, a table out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.learner.frame import Frame, Percept
+from components.learner.perception import limits_of
+from components.learner.perceptual import Perceptual, Planning, Seen
+from components.learner.settings import Settings
+from docking.arrays import pack, unpack
+from docking.cells import Grid
+from docking.grid_policy import GridPolicy
+from docking.policy import UNKNOWN, PolicyTable
+from docking.task import Task
+from docking.value_iteration import LATE_S
+
+_KIND = "perceptual learner"
+_SHOWN_TILT_SHARE = 0.5
+"""The cells show the policy where cot(tilt) is halfway between the nearest and the farthest start."""
+
+
+class PerceptualMethod:
+    """A learner of how percepts move. Nothing in it is random."""
+
+    def __init__(self, task: Task, settings: Settings, period_s: float) -> None:
+        self.settings = settings
+        self.grid = Grid.of(task)
+        self._period_s = period_s
+        planning = Planning(
+            method=settings.method,
+            period_s=period_s,
+            angle_step_rad=settings.grid_angle_rad,
+            d_share=settings.grid_distance_share,
+            memory_s=settings.memory_s,
+            surprise=settings.surprise,
+            trust_per_s=settings.trust_per_s,
+            explore=settings.explore,
+        )
+        near, far = (1.0 / math.tan(tilt) for tilt in (task.start_tilt_max_rad, task.start_tilt_min_rad))
+        self._shown_d = near + _SHOWN_TILT_SHARE * (far - near)
+        self.learner = Perceptual(planning, limits_of(task, docking=settings.goal == "dock"), task.actions)
+        self._newest_ns = -1
+
+    def feed(self, frame: Frame) -> bool:
+        """One frame, in order; True if a new plan has become complete."""
+        gap = self._newest_ns >= 0 and frame.capture_ns - self._newest_ns > 1.5e9 * self._period_s
+        self._newest_ns = frame.capture_ns
+        if gap:
+            self.learner.close()
+        if frame.progress.training:
+            self.learner.feed(_seen(frame), 2 * frame.progress.ended + frame.progress.learning)
+        return self.learner.advance(self.settings.layers_per_frame)
+
+    def table(self, version: int = 0) -> PolicyTable:
+        """The newest complete plan, and its picture on the task's cells."""
+        fine = self.learner.policy(version)
+        action = np.full(self.grid.count, UNKNOWN, dtype=np.int8)
+        value = np.zeros(self.grid.count)
+        if fine is not None:
+            states = self._centres()
+            action = fine.act(states).astype(np.int8)
+            value = self._values(fine, states)
+        return PolicyTable(
+            grid=self.grid,
+            action=action,
+            value=value,
+            actions=self.learner.actions,
+            version=version,
+            method=self.settings.method,
+            transitions=self.learner.memory.samples,
+            table_sha256=self.digest(),
+            fine=fine,
+        )
+
+    def digest(self) -> bytes:
+        """SHA-256 of what is known."""
+        return self.learner.digest()
+
+    def save(self) -> bytes:
+        """The whole state."""
+        header, arrays = self.learner.to_plain()
+        identity = {"method": self.settings.method, "newest_ns": self._newest_ns}
+        return pack(_KIND, {**header, **identity}, arrays)
+
+    def load(self, state: bytes) -> None:
+        """Take over what `save` gave, of a learner of the same task and settings.
+
+        Raises:
+            ValueError: it is not such a state; says why.
+        """
+        header, arrays = unpack(state, _KIND)
+        if header.get("method") != self.settings.method:
+            raise ValueError(f"learner state is of {header.get('method')!r}; it must be {self.settings.method!r}")
+        newest_ns = header.get("newest_ns")
+        if type(newest_ns) is not int:
+            raise ValueError(f"learner state must have newest_ns; got {newest_ns!r}")
+        self.learner.from_plain(header, arrays)
+        self._newest_ns = newest_ns
+
+    def _centres(self) -> NDArray[np.float64]:
+        """(beta, alpha, ln d) in the middle of each cell, at the distance that is shown, [cells, 3]."""
+        log = math.log(self._shown_d)
+        return np.array([(*self.grid.centre(cell), log) for cell in range(self.grid.count)])
+
+    def _values(self, fine: GridPolicy, states: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Goal's reward less the sampling periods to it; 0 where it is not reached, as in the paper's tables."""
+        nodes = fine.axes.nearest(states)
+        times_s = 0.5 * self.learner.half_seconds.reshape(-1)[nodes]
+        value = np.maximum(self.settings.goal_reward - times_s / self._period_s, 1e-3)
+        return np.where((nodes >= 0) & (times_s < LATE_S), value, 0.0)
+
+
+def _seen(frame: Frame) -> Seen | None:
+    percept: Percept = frame.percept
+    if not percept.visible or not all(map(math.isfinite, frame.command)):
+        return None
+    log = -math.log(math.tan(percept.tilt_rad))
+    return Seen((percept.beta_rad, percept.alpha_rad, log), frame.command)

@@ -1,0 +1,52 @@
+"""Driving by a policy that knows the distance: looked up where the robot will be when the command is in force."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.pilot.progress import Held, Progress, Step, Wish
+from components.pilot.rules import Rules
+from components.pilot.sight import Sight
+from docking.grid_policy import UNKNOWN, GridPolicy
+from docking.linear import teacher_action
+from docking.percept_filter import predicted
+
+LONGEST_DELAY = 8
+"""Frames whose commands are remembered."""
+_NEAR_RAD, _STRAIGHT_RAD = math.radians(5.0), math.radians(6.0)
+"""So much before the tilt at the pick-up, and so straight before it, the servo takes over."""
+
+
+def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> Step:
+    """The policy's action, or where it knows none the teacher's; either is chosen anew in every frame."""
+    state = np.array([[sight.beta_rad, sight.alpha_rad, -math.log(math.tan(sight.tilt_rad))]])
+    ahead = predicted(policy.model, state, _sent(policy, progress), rules.params.sampling_period_s)
+    action = int(policy.act(ahead)[0])
+    controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
+    if action == UNKNOWN:
+        controller, action = "lc", teacher_action(rules.teacher, rules.grid, cell, policy.actions)
+    v, omega = policy.actions[action]
+    progress = replace(progress, held=Held(cell, action, v, omega, controller))
+    return remembered(progress, v, omega), Wish(v, omega, controller, action)
+
+
+def is_there(rules: Rules, sight: Sight) -> bool:
+    """Whether a policy that leads to the pick-up has brought the robot so near that the servo can take over."""
+    near = sight.tilt_rad >= rules.task.arrival_tilt_rad - _NEAR_RAD
+    return near and abs(sight.beta_rad) < _STRAIGHT_RAD and abs(sight.alpha_rad) < _STRAIGHT_RAD
+
+
+def remembered(progress: Progress, v_mps: float, omega_radps: float) -> Progress:
+    """With the command of this frame."""
+    return replace(progress, sent=(*progress.sent, v_mps, omega_radps)[-2 * LONGEST_DELAY :])
+
+
+def _sent(policy: GridPolicy, progress: Progress) -> list[NDArray[np.float64]]:
+    """Commands `[1, 2]` that may still be on their way; the robot stood before the first."""
+    needed = int(policy.model.delay_samples) + 1
+    pairs = [(0.0, 0.0)] * needed + list(zip(progress.sent[0::2], progress.sent[1::2], strict=True))
+    return [np.array([pair]) for pair in pairs[-needed:]]
