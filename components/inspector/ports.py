@@ -47,8 +47,9 @@ class Params:
     """Fastest pan, as head's."""
     tilt_rate_radps: float = positive(622 * 0.1125 * DEG)
     """Fastest tilt, as head's."""
-    servo_cycle_s: float = positive(1 / 64)
-    """The head's motors are taken for first-order lags that are computed this often."""
+    servo_cycle_s: float = positive(0.005)
+    """The head's motors are taken for first-order lags that are computed this often: more often than any servo looks at
+    its target. What a slower one lets pass, up to its cycle, counts as latency."""
     frame_s: float = positive(0.125)
     """Time between frames, as tracker's."""
     camera_latency_s: float = not_negative(0.0)
