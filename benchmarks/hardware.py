@@ -91,7 +91,7 @@ def figures() -> list[Figure]:
 def _fault(name: str, outcomes: list[tuple[Outcome, Outcome]]) -> Figure:
     expected = FAULTS[name][2]
     hits = sum(before.wrong == expected for before, _ in outcomes)
-    return Figure(f"{name}: found, and nothing else", hits / len(outcomes), at_least=1.0, note=f"{len(outcomes)} seed(s)")
+    return Figure(f"{name}: found, and nothing else", hits / len(outcomes), at_least=1.0, note="share of the robots")
 
 
 def _whole(robots: Iterable[dict[str, Outcome]]) -> Figure:
