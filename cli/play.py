@@ -31,11 +31,11 @@ from runtime.stage import joined_stage, own_stage
 from runtime.system import ComponentSpec, System, ports_of
 
 FILE = Annotated[Path, typer.Argument(help="Session to play; a torn one is played up to its tear.")]
-RATE = Annotated[float, typer.Option("-r", "--rate", help="Log seconds per second; 0 = as fast as possible.", min=0.0)]
+RATE = Annotated[float, typer.Option("-r", "--rate", help="Log seconds per second; 0 = as fast as possible.", min=0, max=1e6)]
 FAST = Annotated[bool, typer.Option("--fast", help="As fast as the listeners take it; nothing is lost. Same as -r 0.")]
 LOOP = Annotated[bool, typer.Option("-l", "--loop", help="Begin anew at the end, until Ctrl-C.")]
-START = Annotated[float, typer.Option("--start-offset", help="Seconds of the log to leave out.", min=0.0)]
-DURATION = Annotated[float | None, typer.Option(help="Seconds of the log to play.", min=0.0)]
+START = Annotated[float, typer.Option("--start-offset", help="Seconds of the log to leave out.", min=0, max=1e7)]
+DURATION = Annotated[float | None, typer.Option(help="Seconds of the log to play.", min=0, max=1e7)]
 REMAP = Annotated[list[str] | None, typer.Option(help="OLD:=NEW: play a topic on another key. May be repeated.")]
 PAUSED = Annotated[bool, typer.Option("-p", "--paused", help="Start paused: space goes on.")]
 REALM = Annotated[str, typer.Option(help="Realm to play in; default: replay/ and the log's own.")]

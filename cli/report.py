@@ -28,7 +28,7 @@ def write_report(file: Path, output: Path | None = None, poster: Path | None = N
     """Read the session and write its page; matplotlib and numba are imported only here.
 
     Raises:
-        ConfigurationError: the file is no session of ours.
+        ConfigurationError: the file is no session of ours, or the page can not be written.
     """
     from report.comparison import compare  # noqa: PLC0415
     from report.page import numbers, write  # noqa: PLC0415
@@ -38,9 +38,12 @@ def write_report(file: Path, output: Path | None = None, poster: Path | None = N
     page = output or file.with_suffix(".html")
     session = read(file)
     comparison = compare(session.policies, session.launch.get("task", {})) if session.policies else None
-    write(session, page, comparison)
-    if poster is not None:
-        if comparison is None:
-            raise ConfigurationError(f"{file}: must hold a policy to draw a poster of")
-        write_poster(session, comparison, poster)
+    if poster is not None and comparison is None:
+        raise ConfigurationError(f"{file}: must hold a policy to draw a poster of")
+    try:
+        write(session, page, comparison)
+        if poster is not None and comparison is not None:
+            write_poster(session, comparison, poster)
+    except OSError as error:
+        raise ConfigurationError(f"{error.filename or page}: can not be written: {error.strerror}") from None
     return page, dict(numbers(session))

@@ -59,8 +59,8 @@ def scale(default: float = 1.0) -> float:
 
 
 def odd(default: int) -> int:
-    """Field that must be an odd number of at least 3, so that there is a cell in the middle."""
-    return ruled(default, "odd and at least 3", lambda value: value >= 3 and value % 2 == 1)
+    """Field that must be an odd number of cells: one is in the middle, and a table of them still fits into memory."""
+    return ruled(default, "odd and at least 3, at most 501", lambda value: 3 <= value <= 501 and value % 2 == 1)
 
 
 def one_of(default: str, *choices: str) -> str:

@@ -55,6 +55,8 @@ class Playlist:
         self.launch: Mapping[str, Any] = launch
         self._owners = _owners(launch)
         schemas = {row.topic: row.schema for row in recording.topics()}
+        if not schemas:
+            raise ConfigurationError(f"{recording.file}: must hold messages; there are none that can be read")
         selection.check(schemas, str(recording.file))
         wanted = [topic for topic in schemas if selection.takes(topic) and self._is_of(topic, owners)]
         self._check(remap, schemas, wanted, owners)
@@ -65,6 +67,8 @@ class Playlist:
         first = next((logged.time_ns for logged in in_order(recording.messages(), LOG_SKEW_NS, _log_ns)), 0)
         self.start_ns = first + round(start_s * 1e9)
         self._end_ns = None if duration_s is None else self.start_ns + round(duration_s * 1e9)
+        if next(self.messages(self.start_ns), None) is None:
+            raise ConfigurationError(f"{recording.file}: must hold messages of these from {start_s:g} s on; it ends before")
 
     def _is_of(self, topic: str, owners: Collection[str]) -> bool:
         return not owners or (self.owner(topic) in owners and topic.rpartition("/")[2] not in _SHELL)

@@ -176,3 +176,9 @@ def test_hostile_bytes_make_a_session_or_one_line(short, tmp_path):
             continue
     assert read_at_all > 20
     assert time.monotonic() - began_s < 60
+
+
+def test_a_page_that_can_not_be_written_is_named(short, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigurationError, match=r"file/page\.html: can not be written: Not a directory"):
+        write_report(short[0], tmp_path / "file" / "page.html")

@@ -44,7 +44,7 @@ def changed(tmp_path, *changes):
         ('inputs = { view = "vision/view"', 'inputs = { sight = "vision/view"', "tracker.inputs.sight is unknown"),
         ('outputs = { image = "camera/image" }', 'outputs = { image = "pilot/trial" }', "must not share a key"),
         ('restart = "on-failure"', 'restart = "perhaps"', "learner.restart must be one of never, on-failure, always"),
-        ("[task]", "[task]\nbeta_cells = 30", "task.beta_cells must be odd and at least 3; got 30"),
+        ("[task]", "[task]\nbeta_cells = 30", "task.beta_cells must be odd and at least 3, at most 501; got 30"),
         ("[task]", "[tusk]", "tusk is unknown; known are realm, session, task, component"),
         ("[component.vision]", '[component.vision]\nhost = "a/b"', "vision.host must be a lower-case word; got 'a/b'"),
         ("[component.vision]", "[component.vision]\ncolour = 1", "vision.colour is unknown"),

@@ -37,7 +37,7 @@ class Params:
         ({"flag": 1}, "x.flag must be a true or false; got 1"),
         ({"names": "a"}, "x.names must be a list of text; got 'a'"),
         ({"names": ["a", 2]}, "x.names[1] must be a text; got 2"),
-        ({"inner": {"cells": 30}}, "x.inner.cells must be odd and at least 3; got 30"),
+        ({"inner": {"cells": 30}}, "x.inner.cells must be odd and at least 3, at most 501; got 30"),
         ({"inner": 3}, "x.inner must be a table; got 3"),
         ({"speed": 1}, "x.speed is unknown; known are rate_radps, count, share, mode, flag, names, inner"),
     ],

@@ -180,6 +180,14 @@ def test_what_can_not_be_played_is_refused_by_name(log, options, said):
         playlist(log, **options)
 
 
+def test_a_log_that_was_torn_before_its_first_message_is_refused(log, tmp_path):
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(log.recording.read_bytes()[:8192])
+    assert list(Recording(torn).messages()) == []
+    with pytest.raises(ConfigurationError, match=r"torn\.mcap: must hold messages; there are none that can be read"):
+        Playlist(Recording(torn), Selection(), {})
+
+
 def test_a_strangers_log_is_refused(tmp_path):
     with (tmp_path / "ros.mcap").open("wb") as stream:
         writer = Writer(stream)
