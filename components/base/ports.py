@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from docking.angles import DEG
 from runtime.contract import DeviceKind, Input, Kind, Peers, Port, Tick
-from runtime.params import between, one_of, positive, scale
+from runtime.params import between, one_of, positive, ruled, scale
 from schemas.drive_pb2 import Applied, BaseCommand, BaseState, Drive
 
 
@@ -19,7 +19,9 @@ class Params:
     """Of the session. In lockstep every frame is answered once and nothing is said between frames."""
     commanders: tuple[str, ...] = ("grasper", "pilot")
     """Who answers every frame; a frame is decided when they have. The others speak when they like."""
-    begins_with: tuple[str, ...] = ()
+    begins_with: tuple[str, ...] = ruled(
+        (), "some of teleop, grasper, pilot", {"teleop", "grasper", "pilot"}.issuperset
+    )
     """Commanders without whose first word nothing moves: a person who shall have the robot from the start."""
     max_age_s: float = between(0.3, 0.05, 2.0)
     """A command that answers an older frame does not move the robot, and the robot stops when there is no newer."""

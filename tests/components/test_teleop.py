@@ -12,6 +12,7 @@ from components.teleop.component import Teleop
 from components.teleop.ports import Params
 from docking.task import Task
 from runtime.contract import STOP, TICK, Event
+from runtime.params import ConfigurationError, build
 from schemas.drive_pb2 import BaseState, Drive
 from schemas.teleop_pb2 import Hands
 
@@ -62,8 +63,6 @@ def test_a_released_key_stops_the_robot_within_its_time_without_another_frame():
 
 
 def test_the_longest_time_that_a_key_may_count_is_under_300_ms():
-    from runtime.params import ConfigurationError, build  # noqa: PLC0415
-
     with pytest.raises(ConfigurationError, match="hold_s"):
         build(Params, {"hold_s": 0.26}, "x")
 
@@ -146,6 +145,11 @@ def test_a_robot_that_begins_in_a_persons_hand_rests_until_the_person_was_heard(
     base.handle(Event(130 * MS, "teleop", Drive(), 125 * MS))
     (_, then) = base.handle(Event(250 * MS, "pilot", pilot, 250 * MS))
     assert then.message.commander == "pilot"
+
+
+def test_a_beginning_with_nobody_is_refused_by_name():
+    with pytest.raises(ConfigurationError, match="begins_with must be some of teleop, grasper, pilot"):
+        build(BaseParams, {"begins_with": ["telop"]}, "x")
 
 
 ANY = st.floats(allow_nan=False, allow_infinity=False)
