@@ -31,7 +31,9 @@ from runtime.stage import joined_stage, own_stage
 from runtime.system import ComponentSpec, System, ports_of
 
 FILE = Annotated[Path, typer.Argument(help="Session to play; a torn one is played up to its tear.")]
-RATE = Annotated[float, typer.Option("-r", "--rate", help="Log seconds per second; 0 = as fast as possible.", min=0, max=1e6)]
+RATE = Annotated[
+    float, typer.Option("-r", "--rate", help="Log seconds per second; 0 = as fast as possible.", min=0, max=1e6)
+]
 FAST = Annotated[bool, typer.Option("--fast", help="As fast as the listeners take it; nothing is lost. Same as -r 0.")]
 LOOP = Annotated[bool, typer.Option("-l", "--loop", help="Begin anew at the end, until Ctrl-C.")]
 START = Annotated[float, typer.Option("--start-offset", help="Seconds of the log to leave out.", min=0, max=1e7)]

@@ -68,7 +68,9 @@ class Playlist:
         self.start_ns = first + round(start_s * 1e9)
         self._end_ns = None if duration_s is None else self.start_ns + round(duration_s * 1e9)
         if next(self.messages(self.start_ns), None) is None:
-            raise ConfigurationError(f"{recording.file}: must hold messages of these from {start_s:g} s on; it ends before")
+            raise ConfigurationError(
+                f"{recording.file}: must hold messages of these from {start_s:g} s on; it ends before"
+            )
 
     def _is_of(self, topic: str, owners: Collection[str]) -> bool:
         return not owners or (self.owner(topic) in owners and topic.rpartition("/")[2] not in _SHELL)
