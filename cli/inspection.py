@@ -89,7 +89,7 @@ def _changed(spec: ComponentSpec, stage: str, names: Sequence[str]) -> Component
         return dataclasses.replace(spec, inputs=inputs, params={**spec.params, "tilt_low_rad": low})
     if spec.run == "components.base":
         inputs = {"pilot": f"{NAME}/drive", "device": spec.inputs["device"]}
-        params = {**spec.params, "commanders": ("pilot",), "stop_when_gone": (*names, NAME)}
+        params = {**spec.params, "commanders": ("pilot",), "begins_with": (), "stop_when_gone": (*names, NAME)}
         return dataclasses.replace(spec, inputs=inputs, params=params)
     return spec
 

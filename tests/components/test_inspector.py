@@ -12,7 +12,9 @@ from runtime.contract import Event
 from schemas.drive_pb2 import Applied, BaseState
 from schemas.head_pb2 import HeadState
 from schemas.view_pb2 import View
+from runtime.launch import load
 from tests.components.inspecting_world import inspect, robot
+from tests.recorded_session import LAUNCH
 
 FRAME_NS = 125_000_000
 HEAD_AND_WHEELS = {
@@ -205,10 +207,22 @@ def test_a_view_is_answered_once(inspector):
     assert component.handle(Event(6, "view", SEEN, 5)) == ()
 
 
+@pytest.mark.parametrize("name", ["sim2", "teleop"])
+def test_systems_of_two_hosts_and_with_a_person_are_checked_as_well(name):
+    """Here, all that the check needs."""
+    found = inspect(load(LAUNCH.with_name(f"{name}.toml"), clock="lockstep"), "fingertips")
+    assert (found.result.reason, found.wrong) == ("finished", set())
+
+
 def test_base_and_head_are_the_launch_files_own():
     """What is checked is what will run: only the commander is another one."""
     system = robot()
     made = inspected(system, "facing")
     for name in ("vision", "head", "base"):
         before, after = system.component(name).params, made.component(name).params
-        assert {key for key in before if before[key] != after[key]} <= {"tilt_low_rad", "commanders", "stop_when_gone"}
+        assert {key for key in before if before[key] != after[key]} <= {
+            "tilt_low_rad",
+            "commanders",
+            "begins_with",
+            "stop_when_gone",
+        }
