@@ -9,10 +9,10 @@ from cli.inspection import inspected
 from components.inspector.component import Inspector
 from components.inspector.ports import Params
 from runtime.contract import Event
+from runtime.launch import load
 from schemas.drive_pb2 import Applied, BaseState
 from schemas.head_pb2 import HeadState
 from schemas.view_pb2 import View
-from runtime.launch import load
 from tests.components.inspecting_world import inspect, robot
 from tests.recorded_session import LAUNCH
 
