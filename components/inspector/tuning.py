@@ -47,7 +47,7 @@ def _time(thing: str, measured_s: float, in_force_s: float, param: str) -> Judge
 
 
 def _gains(axis: str, used: Gains, found: Fit, rate_radps: float, params: Params) -> list[Judgement]:
-    """Of the camera's latency only what tracker does not know of counts: it takes encoders of the same time."""
+    """Judged without feed-forward, whose part is the robot's own motion; encoders are taken at the exposure."""
     noise_rad = found.image_rms_px / found.focal_px
     loop = Loop(found.lag_s, found.camera_latency_s, rate_radps, params.frame_s, noise_rad)
     wanted = best(loop)
