@@ -116,3 +116,12 @@ def test_a_round_thing_of_the_stripes_colour_is_no_edge_and_leaves_are_no_object
         cv2.line(image, (60, 60), tip, GREEN, 3)
     assert not view(EYES.look(image)).edge_visible
     assert not view(EYES.look(image)).object_visible
+
+
+def test_a_kite_of_the_stripes_colour_is_long_and_straight_but_not_even():
+    image = np.full((HEIGHT, WIDTH, 3), 90, np.uint8)
+    cv2.fillPoly(image, [np.array([(20, 120), (160, 95), (300, 120), (160, 145)])], ORANGE)
+    assert not view(EYES.look(image)).edge_visible
+    image[:] = 90
+    cv2.fillPoly(image, [np.array([(20, 112), (300, 116), (300, 124), (20, 128)])], ORANGE)
+    assert view(EYES.look(image)).edge_visible
