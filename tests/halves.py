@@ -25,22 +25,29 @@ class Halves(NamedTuple):
     def alive(self) -> bool:
         return all(half.poll() is None for half in self)
 
-    def end(self, signal_to_robot: bool) -> list[dict[str, Any]]:
-        """Summaries of both, after the robot was asked to stop."""
-        if signal_to_robot:
-            self.robot.send_signal(signal.SIGINT)
-        outputs = [half.communicate(timeout=60) for half in self]
+    def interrupt(self) -> None:
+        """Ctrl-C on the robot."""
+        self.robot.send_signal(signal.SIGINT)
+
+    def outputs(self) -> list[tuple[str, str]]:
+        """What both have said when they have ended; on a busy machine the report takes a minute."""
+        return [half.communicate(timeout=180) for half in self]
+
+    def summaries(self) -> list[dict[str, Any]]:
+        """Of both, which must end well."""
+        outputs = self.outputs()
         assert [half.returncode for half in self] == [0, 0], outputs
         return [json.loads(out) for out, _ in outputs]
 
 
-def start(cable: Cable, directory: Path, *words: str, launch: str = LAUNCH) -> Halves:
-    """`berth run` on both, in a realm of their own; the laptop records."""
+def start(cable: Cable, directory: Path, *words: str, launch: str = LAUNCH, record: bool = True) -> Halves:
+    """`berth run` on both, in a realm of their own; the laptop records and makes a report."""
     file = directory / "two.toml"
     realm = f"test/{directory.parent.name}-{directory.name}"
     file.write_text(launch.replace('"berth/sim2"', f'"{realm}"'), encoding="utf-8")
     there = f"tcp/{ROBOT_ADDRESS}:7447"
-    common = ("--json", "--record", str(directory / "laptop.mcap"), *words)
+    recording = ("--record", str(directory / "laptop.mcap")) if record else ("--no-record",)
+    common = ("--json", *recording, *words)
     robot = ("run", str(file), "--host", "robot", "--listen", there, "--insecure", *common)
     laptop = ("run", str(file), "--host", "laptop", "--connect", there, *common)
     return Halves(cable.robot.berth(*robot), cable.laptop.berth(*laptop))

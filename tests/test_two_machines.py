@@ -74,7 +74,8 @@ def tell(cable: Cable, halves: Halves, trials: Echo, directory: Path) -> Story:
         cable.robot.words()
     )
     versions = [before["policy_version"], learned, trials.last()["policy_version"]]
-    summaries = halves.end(signal_to_robot=True)
+    halves.interrupt()
+    summaries = halves.summaries()
     assert wait_until((directory / "robot.mcap").exists, 5)
     words = cable.robot.words()
     files = [Recording(directory / f"{name}.mcap") for name in ("laptop", "robot")]
@@ -137,7 +138,7 @@ def test_the_hosts_share_one_connection_and_one_copy_of_each_image(story):
 def test_lockstep_over_the_link_loses_nothing(tmp_path):
     with two_machines(tmp_path) as cable:
         halves = start(cable, tmp_path, "--clock", "lockstep", "--set", "pilot.train_s=20", "--duration", "30")
-        summaries = halves.end(signal_to_robot=False)
+        summaries = halves.summaries()
     assert [summary["lost"] for summary in summaries] == [0, 0]
     assert summaries[1]["exit_reason"] in {"duration", "robot has ended"}
     recording = Recording(tmp_path / "laptop.mcap")
