@@ -29,8 +29,8 @@ def doubts(fit: Fit, alpha_rad: Floats, d: Floats, actions: Floats) -> Floats:
     maps = fit.structure.matrix.reshape(3, 2, known.shape[1], -1)
     found = np.empty((len(known), len(actions)))
     for index, action in enumerate(actions):
-        causes = np.einsum("c,jckw,nk->jnw", action, maps, known)
-        found[:, index] = np.sqrt(np.einsum("jnw,wx,jnx->jn", causes, fit.covariance, causes).max(axis=0))
+        causes = known @ np.tensordot(action, maps, axes=(0, 1))  # [3, nodes, numbers]
+        found[:, index] = np.sqrt(((causes @ fit.covariance) * causes).sum(axis=2).max(axis=0))
     return found.reshape(len(d), len(alpha_rad), len(actions))
 
 

@@ -43,7 +43,7 @@ class Planning:
     """A stretch of frames whose mean square error is so many times the expected one makes it forget what was before."""
     trust_per_s: float = 0.03
     """Standard deviation of the rates, in rad/s and shares of the distance per second, up to which they are trusted."""
-    replan_per_s: float = 0.002
+    replan_per_s: float = 0.005
     """No new plan is made for rates that differ by less, rad/s and camera heights per second."""
     explore: bool = True
     """Where they are not trusted the least known action is tried if that is safe; else the linear controller drives."""

@@ -53,6 +53,7 @@ class Planner:
         self.busy = False
         self._layer = self._sweeps = 0
         self._change = 0.0
+        self._forwards = bool((actions[:, 0] > 0.0).all())
         self._dt_s = period_s
         self._moves = np.empty(0)
 
@@ -64,8 +65,7 @@ class Planner:
 
     def advance(self, layers: int) -> bool:
         """Back up so many layers of equal d, unless the times have settled before; True once they have."""
-        forwards = bool((self.actions[:, 0] > 0.0).all())
-        passes = 60 if forwards else 2  # driving forwards a distance depends on nearer ones only: settle it first
+        passes = 60 if self._forwards else 2  # driving forwards a distance depends on nearer ones only: settle it first
         while self.busy and layers > 0:
             last = min(self._layer + layers, self.axes.d_nodes)
             change = sweep(
@@ -126,5 +126,6 @@ class Planner:
 
     def _end_sweep(self) -> None:
         self._sweeps += 1
-        self.busy = self._change >= SETTLED_S and self._sweeps < _SWEEPS
+        most = 1 if self._forwards else _SWEEPS
+        self.busy = self._change >= SETTLED_S and self._sweeps < most
         self._layer, self._change = 0, 0.0

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from components.learner.frame import Frame, Percept
 from components.learner.perception import limits_of
 from components.learner.perceptual import Perceptual, Planning, Seen
+from components.learner.planner import Planner
 from components.learner.settings import Settings
 from docking.arrays import pack, unpack
 from docking.cells import Grid
-from docking.grid_policy import GridPolicy
+from docking.grid_policy import Axes, GridPolicy
 from docking.policy import UNKNOWN, PolicyTable
+from docking.rates import SIZES, RateModel
 from docking.task import Task
 from docking.value_iteration import LATE_S
 
@@ -44,6 +46,7 @@ class PerceptualMethod:
         self._shown_d = near + _SHOWN_TILT_SHARE * (far - near)
         self.learner = Perceptual(planning, limits_of(task, docking=settings.goal == "dock"), task.actions)
         self._newest_ns = -1
+        self._compile()
 
     def feed(self, frame: Frame) -> bool:
         """One frame, in order; True if a new plan has become complete."""
@@ -100,6 +103,15 @@ class PerceptualMethod:
             raise ValueError(f"learner state must have newest_ns; got {newest_ns!r}")
         self.learner.from_plain(header, arrays)
         self._newest_ns = newest_ns
+
+    def _compile(self) -> None:
+        """Sweep once over a few nodes, so that nothing is compiled while a robot drives."""
+        size = SIZES["kinematic"]
+        axes = Axes(1.0, 1.0, 0.5, 1.0, 3, 3, 2)
+        planner = Planner(self.learner.planner.limits, axes, self.learner.planner.actions, self._period_s)
+        planner.begin(RateModel("kinematic", np.zeros((3, 2, size))))
+        planner.finish()
+        planner.chosen()
 
     def _centres(self) -> NDArray[np.float64]:
         """(beta, alpha, ln d) in the middle of each cell, at the distance that is shown, [cells, 3]."""
