@@ -73,7 +73,7 @@ def failure_of(rules: Rules, progress: Progress, late_ns: int, time_ns: int) -> 
         return Failure.NO_FAILURE, -1
     since_ns = max(progress.began_ns, time_ns - round(rules.params.blame_s * NS))
     if late_ns >= since_ns:
-        return Failure.LATE_COMMAND, late_ns
+        return Failure.LATE_COMMAND, min(late_ns, time_ns)  # a frame that comes late is younger than the stop for it
     if outcome == Outcome.COLLIDED:
         return Failure.COLLISION, time_ns
     if evidence.slip_ns >= since_ns:

@@ -106,6 +106,13 @@ def test_a_collision_after_a_late_command_is_the_late_commands():
     assert Trial.Outcome.Name(trial.outcome) == "COLLIDED"
 
 
+def test_a_late_command_is_never_later_than_the_trials_end():
+    world = World(LC, STRAIGHT)
+    world.go(20)
+    tell(world.pilot, "applied", Applied(commander="stale"), 24)  # base's own clock goes on while a frame is late
+    assert world.step(bumper=True).failure_ns == 20 * PERIOD_NS
+
+
 def test_a_late_command_long_before_the_end_is_not_blamed():
     world = World(LC, STRAIGHT)
     world.go(20)
