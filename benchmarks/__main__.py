@@ -24,6 +24,7 @@ BENCHMARKS = {
     "replay": "a live session of 5 minutes, every component replayed: share of equal outputs, speed",
     "relearn": "learning again from 40 robot-minutes against reading the same channels with the mcap library",
     "fuzz_reader": "ten thousand spoiled recordings through everything that reads one",
+    "fuzz_pioneer": "ten thousand spoiled byte streams through the readers of a Pioneer's line",
     "hardware": "wrong signs, units, beams and latencies: found and put right, by small motions; false alarms",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
     "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts, two controllers",
