@@ -19,7 +19,7 @@ from runtime.params import build
 from runtime.recording import Recording
 from runtime.runfile import Run
 from runtime.supervise import Supervisor
-from runtime.system import System, ports_of
+from runtime.system import ComponentSpec, System, ports_of
 from schemas.percept_pb2 import Percept as PerceptMessage
 
 SCHEMA = "berth.Percept"
@@ -151,8 +151,14 @@ def eyes(system: System) -> list[str]:
         spec = wanted.pop()
         if spec.name not in found and not WHEELS & _names(schemas[spec.name]):
             found.add(spec.name)
-            wanted += [source[key] for key in spec.inputs.values() if key in source]
+            wanted += [source[key] for key in _needed(spec) if key in source]
     return [spec.name for spec in system.components if spec.name in found and not spec.tap]
+
+
+def _needed(spec: ComponentSpec) -> list[str]:
+    """Keys of the inputs that a component can not do without."""
+    ports = ports_of(spec.run).INPUTS
+    return [key for port, key in spec.inputs.items() if not getattr(ports[port], "optional", False)]
 
 
 def _outputs(run: str) -> Sequence[tuple[str, Any]]:
