@@ -148,12 +148,21 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
                 panel.axhline(row.controllable_percent, color="k", lw=1.0, ls="--", label=CEILING)
             for number, name in enumerate(LEARNERS):
                 band(panel, *curve(chosen, name), name, f"C{number}")
-            panel.set(xscale="log", xlabel="robot time, minutes", ylim=(0, 100), title=f"{experiment}, {plant}")
-            panel.xaxis.set_major_formatter("{x:g}")
+            panel.set(ylim=(0, 100), title=f"{experiment}, {plant}")
+            minutes_axis(panel)
         axes[0].set_ylabel("controllable cells, %")
         legend_below(axes[0])
 
     return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=3, height_in=4.6)]
+
+
+def minutes_axis(panel: Axes) -> None:
+    """A logarithmic axis of what was drawn, its ticks as plain numbers."""
+    panel.set(xscale="log", xlabel="robot time, minutes")
+    low, high = panel.get_xlim()
+    panel.set_xticks([minutes for minutes in (1, 2, 5, 10, 20, 60, 200, 600, 3000) if low <= minutes <= high])
+    panel.xaxis.set_major_formatter("{x:g}")
+    panel.minorticks_off()
 
 
 def legend_below(panel: Axes) -> None:

@@ -19,7 +19,7 @@ from docking.linear import Linear
 from docking.policy import PolicyTable
 from docking.task import Task
 from experiments.campaign import Job, Options
-from experiments.curves import band, curve, legend_below
+from experiments.curves import band, curve, legend_below, minutes_axis
 from experiments.evaluation import PLANTS, World, law_times, policy_times
 from experiments.files import write_atomically
 from experiments.learners import EXPLORE, MOTION, TEACHER, learned_rows
@@ -149,9 +149,8 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
                 panel.axhline(row.controllable_percent, color="k", lw=1.0, ls=":", label=TEACHER_ROW)
             for number, name in enumerate((*SCHOOLS, NEURAL)):
                 band(panel, *curve(chosen, name), name, f"C{number}")
-            panel.set(xscale="log", xlabel="robot time, minutes", ylabel="controllable cells, %", title=plant)
-            panel.set_ylim(0, 100)
-            panel.xaxis.set_major_formatter("{x:g}")
+            panel.set(ylabel="controllable cells, %", ylim=(0, 100), title=plant)
+            minutes_axis(panel)
         legend_below(axes[0])
 
     return [folder / f"{NAME}.md", picture(folder / f"{NAME}.png", paint, columns=2, height_in=5.2)]
