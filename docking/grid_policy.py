@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 
 UNKNOWN = -1
 """Action of a node that nothing is known about."""
+TRIED = -2
+"""Less its index: an action that is only tried, to learn."""
 LARGEST_NODES = 4_000_000
 """More is refused."""
 _KIND = "grid policy"
@@ -67,7 +69,8 @@ class GridPolicy:
 
     axes: Axes
     action: NDArray[np.int8]
-    """[d, alpha, beta] index into `actions`, UNKNOWN where the model is not trusted or nothing arrives."""
+    """[d, alpha, beta] index into `actions`, UNKNOWN where nothing arrives or the model is not trusted. There an action
+    that is worth trying in training is TRIED less its index."""
     actions: tuple[tuple[float, float], ...]
     """(v_mps, omega_radps) of each action."""
     model: RateModel
@@ -91,19 +94,20 @@ class GridPolicy:
         _require(self.action.dtype == np.int8, f"action must be int8; got {self.action.dtype}")
         _require(0 < len(self.actions) <= 127, f"there must be 1..127 actions; got {len(self.actions)}")
         _require(bool(np.isfinite(self.actions).all()), f"actions must be finite; got {self.actions}")
-        known = (self.action >= UNKNOWN) & (self.action < len(self.actions))
-        _require(bool(known.all()), f"action must be in -1..{len(self.actions) - 1}")
+        known = (self.action > TRIED - len(self.actions)) & (self.action < len(self.actions))
+        _require(bool(known.all()), f"action must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
         _require(self.version >= 0 and self.samples >= 0, "version and samples must be >= 0")
 
-    def act(self, states: Floats) -> NDArray[np.int64]:
+    def act(self, states: Floats, *, exploring: bool = False) -> NDArray[np.int64]:
         """Index of the action at (beta, alpha, ln d) `[N, 3]`; UNKNOWN outside or where nothing is known: `[N]`."""
         nodes = self.axes.nearest(states)
-        return np.where(nodes >= 0, self.action.reshape(-1)[nodes], UNKNOWN)
+        found = np.where(nodes >= 0, self.action.reshape(-1)[nodes], UNKNOWN).astype(np.int64)
+        return np.where(found <= TRIED, TRIED - found if exploring else UNKNOWN, found)
 
     @property
     def known(self) -> int:
         """Number of nodes with an action."""
-        return int(np.count_nonzero(self.action != UNKNOWN))
+        return int(np.count_nonzero(self.action >= 0))
 
     def to_bytes(self) -> bytes:
         """As a file's contents; equal policies give equal bytes."""

@@ -65,6 +65,8 @@ class Chooser:
     """[actions, 2]"""
     count: int
     period_s: float
+    exploring: bool = False
+    """Actions that are only worth trying are tried."""
 
     def __post_init__(self) -> None:
         self.filter = None if self.policy is None else PerceptFilter(self.policy.model, self.count, self.period_s)
@@ -75,7 +77,7 @@ class Chooser:
         chosen = np.full(len(percepts), UNKNOWN)
         if self.policy is not None and self.filter is not None:
             states = self.filter.ahead(self.filter.update(percepts))
-            chosen = self.policy.act(states)
+            chosen = self.policy.act(states, exploring=self.exploring)
         commands = np.where((chosen == UNKNOWN)[:, None], self._taught(states), self.actions[chosen])
         if self.filter is not None:
             self.filter.send(commands)
@@ -173,7 +175,7 @@ class Trainee:
 
     def _new_chooser(self) -> Chooser:
         return Chooser(
-            self.learner.policy(), law_of(self.problem), np.array(self.problem.actions), 1, self.problem.sampling_s
+            self.learner.policy(), law_of(self.problem), self._actions, 1, self.problem.sampling_s, exploring=True
         )
 
     def _first_pose(self) -> Floats:

@@ -48,6 +48,12 @@ class RecorderAck(_message.Message):
     lost: int
     def __init__(self, messages: _Optional[int] = ..., lost: _Optional[int] = ...) -> None: ...
 
+class LearnerPace(_message.Message):
+    __slots__ = ("version",)
+    VERSION_FIELD_NUMBER: _ClassVar[int]
+    version: int
+    def __init__(self, version: _Optional[int] = ...) -> None: ...
+
 class SessionEnd(_message.Message):
     __slots__ = ("reason",)
     REASON_FIELD_NUMBER: _ClassVar[int]

@@ -22,7 +22,7 @@ from docking.cells import Grid
 from docking.grid_policy import GridPolicy
 from runtime.contract import STOP, Event, Output
 from schemas.policy_pb2 import Policy
-from schemas.session_pb2 import Snapshot
+from schemas.session_pb2 import LearnerPace, Snapshot
 from schemas.trial_pb2 import Trial
 
 _KIND = "learner component"
@@ -106,6 +106,8 @@ class Learner:
             yield Output("policy", self._policy(), frame.capture_ns)
         if self._is_due(frame.progress):
             yield from self._snapshot(frame.capture_ns)
+        if isinstance(self._method, PerceptualMethod):
+            yield Output("pace", LearnerPace(version=self._version), frame.capture_ns)
 
     def _improve(self, frame: Frame) -> bool:
         """Whether the policy may have changed."""

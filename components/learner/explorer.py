@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from components.learner.planner import Planner
 from components.learner.regression import Fit
 from docking.angles import DEG
-from docking.grid_policy import UNKNOWN
+from docking.grid_policy import TRIED, UNKNOWN
 from docking.rates import FUNCTIONS
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,8 @@ class Trusted(NamedTuple):
 def trusted_actions(planner: Planner, fit: Fit, trust_per_s: float, *, explore: bool) -> Trusted:
     """The planner's action where the rates of all actions are known within `trust_per_s`.
 
-    Elsewhere the action that is known least, where that is safe; else UNKNOWN, which is the linear controller's.
+    Elsewhere TRIED less the action that is known least, where that is safe; else UNKNOWN. Both are the linear
+    controller's but for training.
     """
     doubt = doubts(fit, planner.nodes[1], planner.nodes[2], planner.actions)
     table = planner.chosen()
@@ -58,7 +59,7 @@ def trusted_actions(planner: Planner, fit: Fit, trust_per_s: float, *, explore: 
 
 
 def _tried(planner: Planner, doubt: Floats) -> NDArray[np.int8]:
-    """The safe action of the largest doubt at each node, UNKNOWN where none is safe."""
+    """TRIED less the safe action of the largest doubt at each node, UNKNOWN where none is safe."""
     limits, beta = planner.limits, planner.nodes[0]
     best, chosen = np.zeros(planner.axes.shape), np.full(planner.axes.shape, UNKNOWN, dtype=np.int8)
     moves = planner.moves(_AHEAD_S)
@@ -68,6 +69,6 @@ def _tried(planner: Planner, doubt: Floats) -> NDArray[np.int8]:
         inside &= d < limits.d_max_m
         safe = inside[:, :, None] & (np.abs(beta + shift[:, :, None]) < limits.beta_range_rad - _MARGIN_RAD)
         better = safe & (doubt[:, :, action, None] > best)
-        chosen[better] = action
+        chosen[better] = TRIED - action
         best = np.where(better, doubt[:, :, action, None], best)
     return chosen

@@ -15,7 +15,7 @@ from components.learner.model import checked
 from components.learner.motion_memory import MotionMemory
 from components.learner.planner import Planner, axes_of
 from components.learner.structure import STRUCTURES
-from docking.grid_policy import UNKNOWN, GridPolicy
+from docking.grid_policy import TRIED, UNKNOWN, GridPolicy
 from docking.levels import Limits
 from docking.rates import RateModel
 from docking.value_iteration import LATE_S
@@ -166,8 +166,8 @@ class Perceptual:
         sums = {name: checked(arrays, name, own) for name, own in self.memory.sums.arrays().items()}
         table = checked(arrays, "table", self.table)
         half_seconds = checked(arrays, "half_seconds", self.half_seconds)
-        if not ((table >= UNKNOWN) & (table < len(self.actions))).all():
-            raise ValueError(f"table must be in -1..{len(self.actions) - 1}")
+        if not ((table > TRIED - len(self.actions)) & (table < len(self.actions))).all():
+            raise ValueError(f"table must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
         try:
             stretch = [_seen(row) for row in header["stretch"]]
             stage, unsure, samples = int(header["stage"]), bool(header["unsure"]), int(header["samples"])

@@ -13,7 +13,7 @@ from runtime.params import between, positive
 from schemas.drive_pb2 import Applied
 from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
-from schemas.session_pb2 import Snapshot
+from schemas.session_pb2 import LearnerPace, Snapshot
 from schemas.trial_pb2 import Trial
 
 
@@ -50,4 +50,5 @@ _FRAME = ("percept", "trial", "applied")
 OUTPUTS: Mapping[str, Port] = {
     "policy": Port(Policy, Kind.EVENT, on=_FRAME),
     "snapshot": Port(Snapshot, Kind.EVENT, on=_FRAME),
+    "pace": Port(LearnerPace, Kind.EVENT, hz=8, on=_FRAME),
 }

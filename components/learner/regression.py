@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 
 _LEAST_VARIANCE = np.square((0.05 * DEG, 0.05 * DEG, 0.002))
 """No percept is better than this, and no structure is worth more numbers for a smaller error."""
+_NO_SURPRISE = np.square((0.5 * DEG, 0.5 * DEG, 0.01))
+"""Smaller errors are those of a motor that needs time to turn, not of another robot."""
 _ROUNDS = 3
 
 
@@ -73,7 +75,7 @@ def surprise(fit: Fit, fresh: NormalEquations) -> float:
     if fresh.count[index] < 1.0:
         return 0.0
     unknown = [float(np.sum(gram * fit.covariance)) for gram, _ in _parts(fresh, index, fit.structure)]
-    expected = fit.variance + np.array(unknown) / fresh.count[index]
+    expected = np.maximum(fit.variance + np.array(unknown) / fresh.count[index], _NO_SURPRISE)
     return float((_remaining(fresh, index, fit.structure, fit.mean) / expected).max())
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from components.pilot.fine import is_there, steer_fine
+from components.pilot.fine import is_there, leads, steer_fine
 from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
@@ -51,7 +51,7 @@ def is_at_goal(rules: Rules, table: PolicyTable | None, progress: Progress, sigh
     """Whether the approach is over: in the goal cell, or at the pick-up if the policy leads there itself."""
     table = table_of(rules, table, progress)
     greedy = controller_of(rules, progress) == "greedy" and progress.phase == Phase.EVALUATE
-    if greedy and table is not None and table.fine is not None and table.fine.docking:
+    if greedy and table is not None and table.fine is not None and leads(table.fine, sight):
         return is_there(rules, sight)
     return rules.grid.cell(sight.beta_rad, sight.alpha_rad) == rules.grid.goal
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from components.pilot.progress import Held, Progress, Step, Wish
+from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
 from docking.grid_policy import UNKNOWN, GridPolicy
@@ -23,15 +23,19 @@ _NEAR_RAD, _STRAIGHT_RAD = math.radians(5.0), math.radians(6.0)
 
 def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> Step:
     """The policy's action, or where it knows none the teacher's; either is chosen anew in every frame."""
-    state = np.array([[sight.beta_rad, sight.alpha_rad, -math.log(math.tan(sight.tilt_rad))]])
-    ahead = predicted(policy.model, state, _sent(policy, progress), rules.params.sampling_period_s)
-    action = int(policy.act(ahead)[0])
+    ahead = predicted(policy.model, _state(sight), _sent(policy, progress), rules.params.sampling_period_s)
+    action = int(policy.act(ahead, exploring=progress.phase == Phase.TRAIN)[0])
     controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
     if action == UNKNOWN:
         controller, action = "lc", teacher_action(rules.teacher, rules.grid, cell, policy.actions)
     v, omega = policy.actions[action]
     progress = replace(progress, held=Held(cell, action, v, omega, controller))
     return remembered(progress, v, omega), Wish(v, omega, controller, action)
+
+
+def leads(policy: GridPolicy, sight: Sight) -> bool:
+    """Whether the policy itself leads to the pick-up from here."""
+    return policy.docking and int(policy.act(_state(sight))[0]) != UNKNOWN
 
 
 def is_there(rules: Rules, sight: Sight) -> bool:
@@ -43,6 +47,11 @@ def is_there(rules: Rules, sight: Sight) -> bool:
 def remembered(progress: Progress, v_mps: float, omega_radps: float) -> Progress:
     """With the command of this frame."""
     return replace(progress, sent=(*progress.sent, v_mps, omega_radps)[-2 * LONGEST_DELAY :])
+
+
+def _state(sight: Sight) -> NDArray[np.float64]:
+    """(beta, alpha, ln d) `[1, 3]`; d = cot(tilt), in camera heights."""
+    return np.array([[sight.beta_rad, sight.alpha_rad, -math.log(math.tan(sight.tilt_rad))]])
 
 
 def _sent(policy: GridPolicy, progress: Progress) -> list[NDArray[np.float64]]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.learner.frame import Frame, Percept
+from components.learner.frame import Frame
 from components.learner.perception import limits_of
 from components.learner.perceptual import Perceptual, Planning, Seen
 from components.learner.planner import Planner
@@ -21,6 +21,7 @@ from docking.task import Task
 from docking.value_iteration import LATE_S
 
 _KIND = "perceptual learner"
+_FASTER, _FASTEST_MPS = 1.25, 2.0
 _SHOWN_TILT_SHARE = 0.5
 """The cells show the policy where cot(tilt) is halfway between the nearest and the farthest start."""
 
@@ -32,6 +33,7 @@ class PerceptualMethod:
         self.settings = settings
         self.grid = Grid.of(task)
         self._period_s = period_s
+        self._turn_rate_radps = task.turn_rate_radps
         planning = Planning(
             method=settings.method,
             period_s=period_s,
@@ -55,7 +57,7 @@ class PerceptualMethod:
         if gap:
             self.learner.close()
         if frame.progress.training:
-            self.learner.feed(_seen(frame), 2 * frame.progress.ended + frame.progress.learning)
+            self.learner.feed(self._seen(frame), 2 * frame.progress.ended + frame.progress.learning)
         return self.learner.advance(self.settings.layers_per_frame)
 
     def table(self, version: int = 0) -> PolicyTable:
@@ -104,6 +106,15 @@ class PerceptualMethod:
         self.learner.from_plain(header, arrays)
         self._newest_ns = newest_ns
 
+    def _seen(self, frame: Frame) -> Seen | None:
+        """What is learned from; turns faster than the task's are left out, where the motors' response counts most."""
+        percept, (v, omega) = frame.percept, frame.command
+        fast = not (abs(v) <= _FASTEST_MPS and abs(omega) <= _FASTER * self._turn_rate_radps)  # true for NaN
+        if not percept.visible or fast:
+            return None
+        log = -math.log(math.tan(percept.tilt_rad))
+        return Seen((percept.beta_rad, percept.alpha_rad, log), (v, omega))
+
     def _compile(self) -> None:
         """Sweep once over a few nodes, so that nothing is compiled while a robot drives."""
         size = SIZES["kinematic"]
@@ -124,11 +135,3 @@ class PerceptualMethod:
         times_s = 0.5 * self.learner.half_seconds.reshape(-1)[nodes]
         value = np.maximum(self.settings.goal_reward - times_s / self._period_s, 1e-3)
         return np.where((nodes >= 0) & (times_s < LATE_S), value, 0.0)
-
-
-def _seen(frame: Frame) -> Seen | None:
-    percept: Percept = frame.percept
-    if not percept.visible or not all(map(math.isfinite, frame.command)):
-        return None
-    log = -math.log(math.tan(percept.tilt_rad))
-    return Seen((percept.beta_rad, percept.alpha_rad, log), frame.command)
