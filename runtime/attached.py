@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from runtime.contract import Device
+from runtime.contract import Device, Late
 from runtime.inbox import Arrival, Box
 from runtime.outlet import Outlet
 from runtime.wire import Stamp
@@ -70,9 +70,10 @@ class Attached:
     def _run(self) -> None:
         try:
             while not self._done.is_set():
-                message = self._device.read(_READ_S)
-                if message is not None and not self._done.is_set():
-                    self._say(message, self._session_ns(time.monotonic_ns()))
+                reading = self._device.read(_READ_S)
+                if reading is not None and not self._done.is_set():
+                    message, age_s = reading if isinstance(reading, Late) else (reading, 0.0)
+                    self._say(message, self._session_ns(time.monotonic_ns() - round(age_s * 1e9)))
         except BaseException as failure:  # noqa: BLE001  (the main thread raises it)
             if not self._done.is_set():
                 self._failed(failure)

@@ -103,6 +103,16 @@ class DeviceKind:
     """Reads the terminal that the session was started in, so its process must be in the foreground with it."""
     usage: str = ""
     """What a person must know to use it, shown while the session runs."""
+    rest: str = ""
+    """`module:function` of the parameters that brings it to rest without its driver, within a second; never raises.
+    The supervisor calls it when the driver's process has died."""
+
+
+class Late(NamedTuple):
+    """A reading that was taken a moment before the device could give it."""
+
+    message: Any
+    age_s: float
 
 
 class Device(Protocol):
@@ -111,7 +121,7 @@ class Device(Protocol):
     `read` and `close` are called on the reader's thread, `write` on the thread that calls `handle`.
     """
 
-    def read(self, timeout_s: float) -> Message | None:
+    def read(self, timeout_s: float) -> Message | Late | None:
         """Wait for a reading, at most so long; None = nothing yet. Raises DeviceError when the device is gone."""
         ...
 

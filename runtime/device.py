@@ -73,5 +73,14 @@ def opened(spec: ComponentSpec, file: str) -> Device | None:
     return device
 
 
+def lay_to_rest(spec: ComponentSpec) -> None:
+    """Bring a component's device to rest after the component's process has died."""
+    kind = kind_of(spec)
+    if kind is None or not kind.rest:
+        return
+    module, _, name = kind.rest.partition(":")
+    getattr(importlib.import_module(module), name)(build(kind.params, _without_kind(spec.device), spec.name))
+
+
 def _without_kind(table: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in table.items() if key != "kind"}

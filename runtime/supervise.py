@@ -18,6 +18,7 @@ import zenoh
 from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import ALONE, direct, free_endpoint, open_router, ready_key
 from runtime.child import Child
+from runtime.device import lay_to_rest
 from runtime.joining import describe
 from runtime.keeper import Keeper
 from runtime.link import Link
@@ -264,6 +265,7 @@ class Supervisor:
             self._set_hold(member.spec.name, active=False)
 
     def _bury(self, member: _Member, code: int) -> None:
+        lay_to_rest(member.spec)
         words = member.child.describe_end()
         member.child.release()
         delay_s = member.restarts.delay_s(code)
@@ -332,6 +334,9 @@ class Supervisor:
                     self.deaths.append(Death(member.spec.name, -signal.SIGKILL, words, restarted=False))
                 member.child.send(signal.SIGKILL)
             _wait(members, grace_s)
+            for member in members:
+                if member.child.exit_code == -signal.SIGKILL:
+                    lay_to_rest(member.spec)
         for member in members:
             member.child.release()
 

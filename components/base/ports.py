@@ -69,7 +69,49 @@ class Params:
     """Components whose death stops the robot, until a frame captured after it is answered."""
 
 
-DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None}
+@dataclass(frozen=True)
+class Pioneer:
+    """`device = { kind = "pioneer", port = "/dev/ttyUSB0" }`: ActivMedia's robots (Pioneer 2 and 3, PeopleBot)."""
+
+    port: str = ruled("/dev/ttyUSB0", "a path or tcp://HOST:PORT", bool)
+    """Serial port, or `tcp://HOST:8101` of a robot or a simulator in the network."""
+    baud: int = positive(9600)
+    """Speed of the serial line. Pioneer 2 manual: 9600."""
+    search_baud: bool = True
+    """If nobody answers, try the other speeds that these robots can be set to."""
+    model: str = ruled("auto", "a text", bool)
+    """Subclass whose factors count (`pioneer/model.py`); auto = the one that the robot names."""
+    gripper: bool = True
+    """There is one."""
+    beams_obstructed: str = one_of("low", "low", "high")
+    """Level of a break beam's line while something is in it. The manuals disagree; `berth check hardware` tells."""
+    rear_sonars: tuple[int, ...] = ()
+    """Numbers of the sonars that look back, for `rear_range_m`; none = the sonars are switched off."""
+    max_speed_mps: float = between(0.5, 0.01, 2.2)
+    """Either way; the smaller one of this, the robot's own, and `unattended_m` counts. ARIA's absolute limit: 2.2."""
+    max_turn_rate_radps: float = between(60 * DEG, 0.01, 500 * DEG)
+    """As above."""
+    acceleration_mps2: float = between(0.3, 0.01, 4.0)
+    """That the robot is set to, speeding up and braking. PeopleBot manual: 0.3."""
+    turn_acceleration_degps2: float = between(100.0, 1.0, 600.0)
+    """As above."""
+    silent_s: float = between(0.8, 0.2, 5.0)
+    """A robot that says nothing for so long (it speaks every 0.1 s) is connected to anew."""
+    guard_s: float = between(0.4, 0.1, 2.0)
+    """Without a word of base for so long the device stops the robot by itself."""
+    watchdog_s: float = between(2.0, 0.05, 60.0)
+    """The robot's own, as long as it has not told it."""
+    unattended_m: float = between(0.2, 0.01, 1.0)
+    """Furthest that the robot may drive by itself, until its own watchdog stops it, if this machine dies: speed is
+    limited to this over the watchdog's time. 0.1 m/s with the 2 s that the robots come with."""
+    aux: str = ""
+    """Path of a socket to be made for the driver of a camera at the robot's auxiliary port; empty = there is none."""
+    aux_port: int = between(1, 1, 2)
+    """Number of that port. P2OS has only the first."""
+
+
+_PIONEER = DeviceKind("components.base.devices.pioneer:Robot", Pioneer, rest="components.base.devices.pioneer:rest")
+DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None, "pioneer": _PIONEER}
 INPUTS: Mapping[str, Input] = {
     "teleop": Port(Drive, Kind.COMMAND, optional=True),
     "grasper": Port(Drive, Kind.COMMAND, hz=8, optional=True, per_frame=True),
@@ -84,4 +126,5 @@ OUTPUTS: Mapping[str, Port] = {
     "actuate": Port(BaseCommand, Kind.COMMAND, hz=8, per_frame=True, on=_COMMANDS),
     "applied": Port(Applied, Kind.STATE, hz=8, per_frame=True, on=_COMMANDS),
     "state": Port(BaseState, Kind.STATE, hz=8, per_frame=True, on=("device",)),
+    "device": Port(BaseState, Kind.STATE, hz=10),
 }

@@ -1,0 +1,106 @@
+"""The gripper by its commands and switches: what it is told, and what a pick-up needs to know of it. Pure.
+
+One switch says that the lift is at an end, not at which: it is the one that the lift was last sent to, if it has moved
+since. Commands are repeated, because nobody acknowledges them.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from components.base.pioneer.command import Command, integer
+from components.base.pioneer.gripper_pac import GripperPac
+
+_NS = 1_000_000_000
+_REPEAT_NS = _NS
+_PATIENCE_NS = _NS
+"""A motor that has not been seen moving for so long was there already."""
+
+
+class Action(IntEnum):
+    """Numbers of `berth.GripperAction`."""
+
+    KEEP = 0
+    LOWER = 1
+    CLOSE = 2
+    LIFT = 3
+    RELEASE = 4
+
+
+class Code(IntEnum):
+    """Arguments of GRIPPER. Pioneer Gripper Manual."""
+
+    OPEN = 1
+    CLOSE = 2
+    LIFT_UP = 4
+    LIFT_DOWN = 5
+
+
+_OPPOSITE = {Code.OPEN: Code.CLOSE, Code.CLOSE: Code.OPEN, Code.LIFT_UP: Code.LIFT_DOWN, Code.LIFT_DOWN: Code.LIFT_UP}
+_FINGERS = {Action.LOWER: Code.OPEN, Action.CLOSE: Code.CLOSE, Action.RELEASE: Code.OPEN}
+_LIFT = {Action.LOWER: Code.LIFT_DOWN, Action.LIFT: Code.LIFT_UP, Action.RELEASE: Code.LIFT_UP}
+
+
+class Switches(NamedTuple):
+    """What a pick-up needs to know."""
+
+    inner_beam: bool = False
+    outer_beam: bool = False
+    lift_up: bool = False
+    lift_down: bool = False
+    fingers_closed: bool = False
+
+
+class _Motor:
+    """One of both, as it was told and seen."""
+
+    def __init__(self) -> None:
+        self.code: Code | None = None
+        self.told_ns = 0
+        self.moved = False
+
+    def tell(self, code: Code, time_ns: int) -> None:
+        if code != self.code:
+            self.code, self.told_ns, self.moved = code, time_ns, False
+
+    def arrived(self, code: Code, moves: bool, time_ns: int) -> bool:
+        """Whether it has done this."""
+        self.moved = self.moved or moves
+        return self.code == code and not moves and (self.moved or time_ns - self.told_ns >= _PATIENCE_NS)
+
+
+class Gripper:
+    """Turns actions into packets and packets into switches."""
+
+    def __init__(self, obstructed_high: bool) -> None:
+        self._obstructed_high = obstructed_high
+        self._lift, self._fingers = _Motor(), _Motor()
+        self._reversed = (False, False)
+        self._said_ns = 0
+        self.switches = Switches()
+
+    def command(self, action: int, lift_reversed: bool, fingers_reversed: bool, time_ns: int) -> tuple[bytes, ...]:
+        """Packets that begin an action, or say again what it was."""
+        before = (self._lift.code, self._fingers.code, self._reversed)
+        if action in _FINGERS:
+            self._fingers.tell(_FINGERS[Action(action)], time_ns)
+        if action in _LIFT:
+            self._lift.tell(_LIFT[Action(action)], time_ns)
+        self._reversed = (lift_reversed, fingers_reversed)
+        if before == (self._lift.code, self._fingers.code, self._reversed) and time_ns - self._said_ns < _REPEAT_NS:
+            return ()
+        self._said_ns = time_ns
+        wanted = ((self._fingers.code, fingers_reversed), (self._lift.code, lift_reversed))
+        codes = (_OPPOSITE[code] if turned else code for code, turned in wanted if code is not None)
+        return tuple(integer(Command.GRIPPER, code) for code in codes)
+
+    def see(self, pac: GripperPac, time_ns: int) -> None:
+        """Take a packet."""
+        inner, outer = pac.inner_beam == self._obstructed_high, pac.outer_beam == self._obstructed_high
+        at_end = pac.lift_at_end
+        lift_moves = pac.lift_moves or not at_end
+        up = self._lift.arrived(Code.LIFT_UP, lift_moves, time_ns)
+        down = self._lift.arrived(Code.LIFT_DOWN, lift_moves, time_ns)
+        closed = self._fingers.arrived(Code.CLOSE, pac.fingers_move, time_ns)
+        self.switches = Switches(inner, outer, up, down, closed)
