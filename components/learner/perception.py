@@ -10,6 +10,8 @@ from docking.task import Task
 
 DOCKED_SHARE = 0.02 / 0.28
 """Of the distance at the pick-up: how far off the gripper may be. 2 cm where it reaches 0.28 m."""
+_AIM = 0.5
+"""Share of the tolerances that is planned for: the edge of what counts is no place to aim at with a real motor."""
 _REVERSE_ROOM = 1.3
 """A robot that can drive backwards may go so much farther than the farthest start."""
 
@@ -27,6 +29,6 @@ def limits_of(task: Task, *, docking: bool) -> Limits:
         d_max_m=(_REVERSE_ROOM if backwards else 1.0) / math.tan(task.start_tilt_min_rad),
         gripper_m=goal_d,
         docking=docking,
-        docked_m=DOCKED_SHARE * goal_d,
-        docked_rad=DOCKED_RAD,
+        docked_m=_AIM * DOCKED_SHARE * goal_d,
+        docked_rad=_AIM * DOCKED_RAD,
     )

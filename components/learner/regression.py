@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 _LEAST_VARIANCE = np.square((0.05 * DEG, 0.05 * DEG, 0.002))
 """No percept is better than this, and no structure is worth more numbers for a smaller error."""
-_NO_SURPRISE = np.square((0.5 * DEG, 0.5 * DEG, 0.01))
+_NO_SURPRISE = np.square((1.0 * DEG, 1.0 * DEG, 0.02))
 """Smaller errors are those of a motor that needs time to turn, not of another robot."""
 _ROUNDS = 3
 

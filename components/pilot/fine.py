@@ -22,7 +22,11 @@ _NEAR_RAD, _STRAIGHT_RAD = math.radians(5.0), math.radians(6.0)
 
 
 def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> Step:
-    """The policy's action, or where it knows none the teacher's; either is chosen anew in every frame."""
+    """The policy's action, or where it knows none the teacher's; held for some frames, then chosen anew."""
+    held = progress.held
+    if 0 < _held_frames(progress) < rules.params.fine_hold_samples:
+        wish = Wish(held.v_mps, held.omega_radps, held.controller, held.action)
+        return remembered(progress, held.v_mps, held.omega_radps), wish
     ahead = predicted(policy.model, _state(sight), _sent(policy, progress), rules.params.sampling_period_s)
     action = int(policy.act(ahead, exploring=progress.phase == Phase.TRAIN)[0])
     controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
@@ -31,6 +35,15 @@ def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sigh
     v, omega = policy.actions[action]
     progress = replace(progress, held=Held(cell, action, v, omega, controller))
     return remembered(progress, v, omega), Wish(v, omega, controller, action)
+
+
+def _held_frames(progress: Progress) -> int:
+    """For how many frames the held action has been sent; 0 = none is held."""
+    held, pairs = progress.held, list(zip(progress.sent[0::2], progress.sent[1::2], strict=True))
+    frames = 0
+    while frames < len(pairs) and pairs[-1 - frames] == (held.v_mps, held.omega_radps):
+        frames += 1
+    return frames if held.action >= 0 else 0
 
 
 def leads(policy: GridPolicy, sight: Sight) -> bool:

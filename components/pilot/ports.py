@@ -61,6 +61,9 @@ class Params:
     """An action is held until the cell changes (the paper's semi-Markov step), or for one sample."""
     sampling_period_s: float = positive(0.125)
     """Ts. By it a policy that knows the distance bridges the delay of its commands. Table I."""
+    fine_hold_samples: int = between(3, 1, 8)
+    """A policy that knows the distance holds each action so long: at the edge between two it would choose the other in
+    every frame, faster than motors can turn, and their lag would drive."""
     k_beta_per_s: float = 2.25
     """Gain of the linear law and teacher on beta. Best of a grid search on the geometric plant; by hand: 1.5."""
     k_alpha_per_s: float = 1.5
