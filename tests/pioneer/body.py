@@ -1,0 +1,65 @@
+"""The simulated world behind the emulated robot: wheels, gripper and switches as a Pioneer has them."""
+
+from __future__ import annotations
+
+from components.simulator.base import Twist
+from components.simulator.gripper import Gripper
+from components.simulator.world import World
+
+OPEN, CLOSE, FINGERS_STOP, UP, DOWN, LIFT_STOP, STORE, DEPLOY = range(1, 9)
+"""Arguments of GRIPPER."""
+
+
+class TwoMotors(Gripper):
+    """The simulator's gripper with a lift and fingers that are told one by one."""
+
+    def __init__(self, params):
+        super().__init__(params)
+        self.lift_code, self.fingers_code = LIFT_STOP, FINGERS_STOP
+        self.lift_moves = self.fingers_move = False
+
+    def tell(self, code):
+        if code in {OPEN, CLOSE, FINGERS_STOP}:
+            self.fingers_code = code
+        elif code in {UP, DOWN, LIFT_STOP}:
+            self.lift_code = code
+        elif code in {STORE, DEPLOY}:
+            self.fingers_code, self.lift_code = (CLOSE, UP) if code == STORE else (OPEN, DOWN)
+
+    def step(self, ahead_m, left_m, dt_s):
+        before = self.lift, self.fingers
+        if self.lift_code != LIFT_STOP:
+            self._move_lift(self.lift_code == UP, dt_s)
+        if self.fingers_code == OPEN:
+            self._open(dt_s)
+        elif self.fingers_code == CLOSE:
+            self._close(ahead_m, left_m, dt_s)
+        self.lift_moves, self.fingers_move = self.lift != before[0], self.fingers != before[1]
+
+
+class Body(World):
+    """A world that asks its robot, before each step, how fast the wheels shall turn."""
+
+    def __init__(self, params, start, time_ns):
+        super().__init__(params, start, time_ns)
+        self.gripper = TwoMotors(params)
+        self.twist = lambda _time_ns: (0.0, 0.0)
+        self.before_step = lambda _time_ns: None
+
+    def place(self, start):
+        super().place(start)
+        self.gripper = TwoMotors(self._params)
+
+    def step(self):
+        self.before_step(self.time_ns)
+        self.base.command(Twist(*self.twist(self.time_ns)), self.time_ns)
+        super().step()
+
+    @property
+    def switches(self):
+        """GRIPPERpac's state: low where a switch holds or a beam is broken, high where a motor moves."""
+        gripper = self.gripper
+        inner, outer = gripper.beams(*self.object_from_gripper)
+        low = (gripper.fingers >= 1.0, gripper.up or gripper.down, outer, inner, gripper.gripping, gripper.gripping)
+        bits = sum((not active) << bit for bit, active in enumerate(low))
+        return bits | gripper.lift_moves << 6 | gripper.fingers_move << 7

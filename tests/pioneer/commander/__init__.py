@@ -1,0 +1,1 @@
+"""Drives ahead, as a pilot would that has no eyes."""

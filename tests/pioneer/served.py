@@ -1,0 +1,150 @@
+"""The emulated robot in real time, at a pseudo-terminal or a TCP port. `python -m tests.pioneer.served` shows one."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import socket
+import sys
+import termios
+import threading
+import time
+import tty
+
+from components.simulator.params import Params
+from docking.starts import Start
+from tests.pioneer.body import Body
+from tests.pioneer.robot import Robot
+
+STEP_NS = 1_000_000_000 // 64
+_BYTES = 4096
+_SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 115200: termios.B115200}
+
+
+class Serial:
+    """The robot's end of a serial cable. At another speed than the robot's only garbage passes."""
+
+    def __init__(self, baud=9600):
+        self.baud = baud
+        self.plug()
+
+    def plug(self):
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self.port = os.ttyname(self._slave)
+
+    def pull(self):
+        """Whoever has it open is told that it has ended."""
+        os.close(self._slave)
+        os.close(self._master)
+        self._master = -1
+
+    def read(self):
+        if self._master < 0 or not select.select([self._master], [], [], 0)[0]:
+            return b""
+        return self._as_heard(os.read(self._master, _BYTES))
+
+    def write(self, data):
+        if self._master >= 0:
+            with contextlib.suppress(BlockingIOError):
+                os.write(self._master, self._as_heard(data))
+
+    def _as_heard(self, data):
+        return data if termios.tcgetattr(self._master)[4] == _SPEEDS[self.baud] else bytes(b ^ 0x55 for b in data)
+
+    def close(self):
+        if self._master >= 0:
+            self.pull()
+
+
+class Network:
+    """The robot's end of a network connection; the newest client counts."""
+
+    def __init__(self, port=0):
+        self._listener = socket.create_server(("127.0.0.1", port))
+        self._listener.setblocking(False)
+        self._client = None
+        self.port = f"tcp://127.0.0.1:{self._listener.getsockname()[1]}"
+
+    def read(self):
+        with contextlib.suppress(BlockingIOError):
+            client, _ = self._listener.accept()
+            client.setblocking(False)
+            self._client = client
+        try:
+            return self._client.recv(_BYTES) if self._client is not None else b""
+        except (BlockingIOError, ConnectionError):
+            return b""
+
+    def write(self, data):
+        if self._client is not None:
+            with contextlib.suppress(OSError):
+                self._client.send(data)
+
+    def pull(self):
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+
+    def close(self):
+        self.pull()
+        self._listener.close()
+
+
+class Served:
+    """A robot that lives in a thread as long as the context. Its world may be looked at while `turn` is held."""
+
+    def __init__(self, end, body=None, **robot):
+        self.end = end
+        self.body = body or Body(Params(), Start(0.0, 0.0, 50.0), 0)
+        self.robot = Robot(self.body, **robot)
+        self.body.twist = self.robot.twist
+        self.turn = threading.Lock()
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._live, daemon=True)
+
+    def _live(self):
+        began_ns = time.monotonic_ns() - self.body.time_ns
+        while not self._done.wait(0.003):
+            with self.turn:
+                now_ns = time.monotonic_ns() - began_ns
+                while self.body.time_ns + STEP_NS <= now_ns:
+                    self.body.step()
+                self.robot.hear(self.end.read(), now_ns)
+                said = self.robot.speak(now_ns)
+                if said:
+                    self.end.write(said)
+
+    def pull(self):
+        with self.turn:
+            self.end.pull()
+
+    @property
+    def v_mps(self):
+        with self.turn:
+            return self.body.base.v_mps
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._done.set()
+        self._thread.join()
+        self.end.close()
+
+
+def main():
+    """Serve until interrupted: `--port 8101`, or a pseudo-terminal."""
+    end = Network(int(sys.argv[2])) if sys.argv[1:2] == ["--port"] else Serial()
+    with Served(end):
+        sys.stdout.write(f"a robot is at {end.port}\n")
+        sys.stdout.flush()
+        with contextlib.suppress(KeyboardInterrupt):
+            threading.Event().wait()
+
+
+if __name__ == "__main__":
+    main()
