@@ -44,11 +44,13 @@ class Fit:
 
 
 def best_fit(sums: NormalEquations, structures: Sequence[Structure]) -> Fit:
-    """The delay that explains most under the first structure, then the structure of the largest evidence."""
-    by_delay = [fitted(sums, index, structures[0], None) for index in range(len(DELAYS))]
+    """The delay that explains most, then the structure of the largest evidence.
+
+    Delays are judged under the second structure, which does not mirror: one that does would take a robot that drifts to
+    one side for a late one.
+    """
+    by_delay = [fitted(sums, index, structures[1], None) for index in range(len(DELAYS))]
     index = int(np.argmin([np.log(fit.variance).sum() for fit in by_delay]))
-    if len(structures) == 1:
-        return by_delay[index]
     variance = fitted(sums, index, structures[-1], None).variance
     fits = [fitted(sums, index, structure, variance) for structure in structures]
     chosen = max(fits, key=lambda fit: fit.log_evidence)
