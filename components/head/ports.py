@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from docking.angles import DEG
 from runtime.contract import DeviceKind, Input, Kind, Port
-from runtime.params import between, positive, scale
+from runtime.params import between, positive, ruled, scale
 from schemas.head_pb2 import HeadCommand, HeadState
 
 
@@ -35,7 +35,32 @@ class Params:
     """Radians down for 1 of the device's encoder."""
 
 
-DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None}
+@dataclass(frozen=True)
+class PanTilt:
+    """`device = { kind = "canon-vc-c4", port = "/dev/ttyS1" }` or `"sony-evi-d30"`: a pan-tilt camera."""
+
+    port: str = ruled("/dev/ttyS1", "a path, tcp://HOST:PORT or unix:PATH", bool)
+    """Serial port of its own; or `unix:PATH`, where PATH is `aux` of base's pioneer: the robot's auxiliary port."""
+    baud: int = positive(9600)
+    """Speed of the serial line."""
+    inverted: bool = False
+    """It hangs upside down, so that left and right, up and down are exchanged. A VC-C4 looks 30 deg down upright, and
+    88 deg hanging; the pick-up wants 58."""
+    answer_s: float = between(0.5, 0.05, 5.0)
+    """Longest wait for an answer; three without one, and the camera is begun with anew. A VC-C4 may take 0.3 s."""
+    lead_s: float = between(0.1, 0.0, 1.0)
+    """An aim's rates are followed so far ahead: half a frame and the way to the camera."""
+    pan_rate_radps: float = positive(90 * DEG)
+    """Fastest pan that the camera is set to. VC-C4: 90 deg/s, EVI-D30: 80."""
+    tilt_rate_radps: float = positive(70 * DEG)
+    """Fastest tilt. VC-C4: 74 deg/s, EVI-D30: 50."""
+
+
+DEVICES: Mapping[str, DeviceKind | None] = {
+    "simulator": None,
+    "canon-vc-c4": DeviceKind("components.head.devices.pan_tilt:CanonVcC4", PanTilt),
+    "sony-evi-d30": DeviceKind("components.head.devices.pan_tilt:SonyEviD30", PanTilt),
+}
 INPUTS: Mapping[str, Input] = {
     "aim": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True),
     "device": Port(HeadState, Kind.STATE, hz=8, per_frame=True),
@@ -43,4 +68,5 @@ INPUTS: Mapping[str, Input] = {
 OUTPUTS: Mapping[str, Port] = {
     "state": Port(HeadState, Kind.STATE, hz=8, per_frame=True, on=("device",)),
     "actuate": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True, on=("aim",)),
+    "device": Port(HeadState, Kind.STATE, hz=10),
 }

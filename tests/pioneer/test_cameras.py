@@ -1,0 +1,153 @@
+"""Pan-tilt cameras: their bytes against the manuals, and the driver against emulated ones, in emulated time."""
+
+import math
+import random
+
+import pytest
+
+from components.head import canon, visca
+from components.head.camera import Camera
+from components.head.ports import PanTilt
+from components.head.reply import Kind, Reply
+from components.simulator.params import Params
+from docking.starts import Start
+from tests.pioneer import cameras
+from tests.pioneer.body import Body
+
+NS = 1_000_000_000
+STEP_NS = NS // 64
+CAMERAS = {"canon": (canon.Canon, cameras.Canon), "sony": (visca.Visca, cameras.Sony)}
+
+
+def test_a_canon_is_told_90_right_and_30_down_as_in_its_manual():
+    assert canon.Canon().move(800, -267).content == b"\xff\x30\x30\x00\x6283207EF5\xef"
+
+
+def test_a_canon_s_position_is_read_from_its_answer():
+    assert canon.Canon().feed(b"\xfe\x30\x30\x30\x3083207EF5\xef") == [Reply(Kind.POSITION, 800, -267)]
+
+
+def test_a_canon_s_errors_are_told_apart():
+    kinds = [canon.Canon().feed(b"\xfe\x30\x30" + bytes((e,)) + b"\x30\xef")[0].kind for e in (0x30, 0x31, 0x35, 0x39)]
+    assert kinds == [Kind.DONE, Kind.BUSY, Kind.REFUSED, Kind.UNREADY]
+
+
+def test_a_sony_is_told_its_ends_as_in_its_manual():
+    content = visca.Visca().move(880, 300).content
+    assert content == bytes.fromhex("81 01 06 02 18 14 00 03 07 00 00 01 02 0c ff")
+
+
+def test_a_sony_s_position_is_read_from_its_answer():
+    assert visca.Visca().feed(bytes.fromhex("90 50 0f 0c 09 00 00 01 02 0c ff")) == [Reply(Kind.POSITION, -880, 300)]
+
+
+def test_a_sony_s_replies_are_told_apart():
+    replies = visca.Visca().feed(bytes.fromhex("90 41 ff 90 51 ff 90 60 03 ff 90 61 41 ff 90 60 02 ff"))
+    assert [r.kind for r in replies] == [Kind.DONE, Kind.NEWS, Kind.BUSY, Kind.BUSY, Kind.REFUSED]
+
+
+@pytest.mark.parametrize("make", [canon.Canon, visca.Visca])
+def test_no_bytes_crash_a_reader_or_fill_it_and_a_whole_answer_behind_them_is_read(make):
+    rng, whole = random.Random(9), {canon.Canon: b"\xfe\x30\x30\x30\x30\xef", visca.Visca: b"\xff\x90\x41\xff"}[make]
+    for _ in range(500):
+        speech = make()
+        for _ in range(3):
+            speech.feed(rng.randbytes(rng.randrange(40)))
+            assert len(speech._buffer) < 64
+        assert Reply(Kind.DONE) in speech.feed(whole)
+
+
+class Rig:
+    """A camera and its driver at one clock."""
+
+    def __init__(self, name, inverted=True, **camera):
+        speech, emulated = CAMERAS[name]
+        self.body = Body(Params(head_lag_s=0.0), Start(0.0, 0.0, 50.0), 0)
+        self.emulated = emulated(lambda: self.body.head, inverted=inverted, **camera)
+        self.driver = Camera(speech(), PanTilt(inverted=inverted), 0)
+        self.now_ns = 0
+        self.readings = []
+        self.cable = True
+
+    def run(self, seconds):
+        end_ns = self.now_ns + round(seconds * NS)
+        while self.now_ns < end_ns:
+            self.now_ns += STEP_NS
+            request = self.driver.request(self.now_ns)
+            if request is not None and self.cable:
+                self.emulated.hear(request.content, self.now_ns)
+            said = self.emulated.speak(self.now_ns)
+            if said and self.cable:
+                self.driver.take(said, self.now_ns)
+            self.readings += self.driver.readings
+            self.driver.readings.clear()
+            self.body.step()
+        return self
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+@pytest.mark.parametrize("inverted", [True, False])
+def test_it_looks_left_and_says_so(name, inverted):
+    rig = Rig(name, inverted).run(3.0)
+    down = math.radians(20)
+    rig.driver.aim(0.5, down, 0.0, 0.0)
+    rig.run(2.0)
+    assert rig.body.head.angles_rad == pytest.approx((0.5, down), abs=2e-3)
+    assert rig.readings[-1][:2] == pytest.approx((0.5, down), abs=4e-3)
+
+
+def test_a_hanging_canon_looks_down_to_the_pick_up_and_an_upright_one_as_far_as_it_can():
+    for inverted, reached in ((True, 58.0), (False, 30.0)):
+        rig = Rig("canon", inverted).run(3.0)
+        rig.driver.aim(0.0, math.radians(58), 0.0, 0.0)
+        rig.run(2.0)
+        assert math.degrees(rig.readings[-1].tilt_rad) == pytest.approx(reached, abs=0.1)
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_position_counts_for_when_it_was_asked_for_however_late_the_answer(name):
+    rig = Rig(name, answer_s=0.3).run(5.0)
+    rig.driver.aim(0.0, 0.1, 0.0, 0.0)
+    rig.run(3.0)
+    rig.readings.clear()
+    truth = {}
+    for _ in range(240):
+        rig.driver.aim(0.8 * math.sin(rig.now_ns / NS), 0.1, 0.0, 0.0)
+        truth[rig.now_ns // STEP_NS] = rig.body.head.angles_rad[0]
+        rig.run(1 / 64)
+    assert len(rig.readings) >= 5
+    for reading in rig.readings[1:]:
+        assert reading.pan_rad == pytest.approx(truth[reading.time_ns // STEP_NS], abs=0.03)
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_busy_camera_is_asked_again(name):
+    rig = Rig(name).run(3.0)
+    rig.emulated.busy_until_ns = rig.now_ns + NS
+    rig.driver.aim(0.4, 0.1, 0.0, 0.0)
+    rig.run(3.0)
+    assert rig.body.head.angles_rad[0] == pytest.approx(0.4, abs=2e-3)
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_a_camera_that_falls_silent_is_unknown_and_comes_back(name):
+    rig = Rig(name).run(3.0)
+    rig.cable = False
+    rig.run(4.0)
+    assert math.isnan(rig.readings[-1].pan_rad)
+    rig.cable = True
+    rig.driver.aim(0.3, 0.1, 0.0, 0.0)
+    rig.run(5.0)
+    assert rig.readings[-1].pan_rad == pytest.approx(0.3, abs=4e-3)
+    assert list(rig.driver.words)[-2:] == [
+        "the camera does not answer; asking again and again",
+        "the camera answers",
+    ]
+
+
+def test_a_canon_that_was_switched_off_is_set_up_again():
+    rig = Rig("canon").run(3.0)
+    rig.emulated.power, rig.emulated.tilts = False, (-267, 267)
+    rig.driver.aim(0.0, math.radians(58), 0.0, 0.0)
+    rig.run(5.0)
+    assert math.degrees(rig.readings[-1].tilt_rad) == pytest.approx(58.0, abs=0.1)
