@@ -25,6 +25,7 @@ BENCHMARKS = {
     "relearn": "learning again from 40 robot-minutes against reading the same channels with the mcap library",
     "fuzz_reader": "ten thousand spoiled recordings through everything that reads one",
     "fuzz_pioneer": "ten thousand spoiled byte streams through the readers of a Pioneer's line",
+    "pioneer": "the learned policy through a Pioneer's serial protocol beside the direct simulation, 200 paired starts",
     "hardware": "wrong signs, units, beams and latencies: found and put right, by small motions; false alarms",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
     "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts, two controllers",

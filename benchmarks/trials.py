@@ -17,28 +17,29 @@ from runtime.lockstep import Lockstep
 LAUNCH = Path("launch/sim.toml")
 
 
-def evaluate(overrides: Sequence[str], first: int, count: int) -> list[Trial]:
+def evaluate(overrides: Sequence[str], first: int, count: int, launch: Path = LAUNCH) -> list[Trial]:
     """Trials from `count` consecutive starts of the simulator's list.
 
     Args:
         overrides: as on the command line; they choose the controller.
         first: number of the first start.
         count: how many.
+        launch: file of the system.
     """
     chunk = max(1, -(-count // (4 * (os.cpu_count() or 1))))
     jobs = [
-        delayed(_part)(tuple(overrides), start, min(chunk, first + count - start))
+        delayed(_part)(tuple(overrides), start, min(chunk, first + count - start), launch)
         for start in range(first, first + count, chunk)
     ]
     parts: Iterable[list[Trial]] = Parallel(n_jobs=-1)(jobs)
     return [trial for part in parts for trial in part]
 
 
-def _part(overrides: tuple[str, ...], first: int, count: int) -> list[Trial]:
+def _part(overrides: tuple[str, ...], first: int, count: int, launch: Path) -> list[Trial]:
     """One process's share; nothing is learned and nothing recorded."""
     fixed = ["pilot.train_s=0", f"pilot.evaluation_trials={count}", f"pilot.first_start={first}"]
     system = load(
-        LAUNCH, [*fixed, *overrides], only=("simulator", "vision", "head", "tracker", "pilot", "grasper", "base")
+        launch, [*fixed, *overrides], only=("simulator", "vision", "head", "tracker", "pilot", "grasper", "base")
     )
     return watched(Lockstep(system)).trials
 
