@@ -4,30 +4,35 @@
 # source: schemas/policy.proto
 # Protobuf Python Version: 7.35.1
 """Generated protocol buffer code."""
-
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import descriptor_pool as _descriptor_pool
 from google.protobuf import runtime_version as _runtime_version
 from google.protobuf import symbol_database as _symbol_database
 from google.protobuf.internal import builder as _builder
-
-_runtime_version.ValidateProtobufRuntimeVersion(_runtime_version.Domain.PUBLIC, 7, 35, 1, "", "schemas/policy.proto")
+_runtime_version.ValidateProtobufRuntimeVersion(
+    _runtime_version.Domain.PUBLIC,
+    7,
+    35,
+    1,
+    '',
+    'schemas/policy.proto'
+)
 # @@protoc_insertion_point(imports)
 
 _sym_db = _symbol_database.Default()
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(
-    b'\n\x14schemas/policy.proto\x12\x05\x62\x65rth"\xa1\x04\n\x06Policy\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x0e\n\x06method\x18\x02 \x01(\t\x12\x12\n\nbeta_cells\x18\x03 \x01(\r\x12\x13\n\x0b\x61lpha_cells\x18\x04 \x01(\r\x12\x16\n\x0e\x62\x65ta_range_rad\x18\x05 \x01(\x01\x12\x17\n\x0f\x61lpha_range_rad\x18\x06 \x01(\x01\x12\x0e\n\x06\x61\x63tion\x18\x07 \x01(\x0c\x12\r\n\x05value\x18\x08 \x03(\x02\x12\x14\n\x0ctable_sha256\x18\t \x01(\x0c\x12\x13\n\x0btransitions\x18\n \x01(\r\x12\x14\n\x0c\x61\x63tion_v_mps\x18\x0b \x03(\x01\x12\x1a\n\x12\x61\x63tion_omega_radps\x18\x0c \x03(\x01\x12 \n\x04\x66ine\x18\r \x01(\x0b\x32\x12.berth.Policy.Fine\x1a\xfd\x01\n\x04\x46ine\x12\x16\n\x0e\x62\x65ta_range_rad\x18\x01 \x01(\x01\x12\x17\n\x0f\x61lpha_range_rad\x18\x02 \x01(\x01\x12\r\n\x05\x64_min\x18\x03 \x01(\x01\x12\r\n\x05\x64_max\x18\x04 \x01(\x01\x12\x12\n\nbeta_nodes\x18\x05 \x01(\r\x12\x13\n\x0b\x61lpha_nodes\x18\x06 \x01(\r\x12\x0f\n\x07\x64_nodes\x18\x07 \x01(\r\x12\x13\n\x0b\x61\x63tion_zlib\x18\x08 \x01(\x0c\x12\x0f\n\x07\x64ocking\x18\t \x01(\x08\x12\x11\n\tfunctions\x18\n \x01(\t\x12\r\n\x05theta\x18\x0b \x03(\x01\x12\x15\n\rdelay_samples\x18\x0c \x01(\x01\x12\r\n\x05noise\x18\r \x03(\x01\x62\x06proto3'
-)
+
+
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14schemas/policy.proto\x12\x05\x62\x65rth\"\xa1\x04\n\x06Policy\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x0e\n\x06method\x18\x02 \x01(\t\x12\x12\n\nbeta_cells\x18\x03 \x01(\r\x12\x13\n\x0b\x61lpha_cells\x18\x04 \x01(\r\x12\x16\n\x0e\x62\x65ta_range_rad\x18\x05 \x01(\x01\x12\x17\n\x0f\x61lpha_range_rad\x18\x06 \x01(\x01\x12\x0e\n\x06\x61\x63tion\x18\x07 \x01(\x0c\x12\r\n\x05value\x18\x08 \x03(\x02\x12\x14\n\x0ctable_sha256\x18\t \x01(\x0c\x12\x13\n\x0btransitions\x18\n \x01(\r\x12\x14\n\x0c\x61\x63tion_v_mps\x18\x0b \x03(\x01\x12\x1a\n\x12\x61\x63tion_omega_radps\x18\x0c \x03(\x01\x12 \n\x04\x66ine\x18\r \x01(\x0b\x32\x12.berth.Policy.Fine\x1a\xfd\x01\n\x04\x46ine\x12\x16\n\x0e\x62\x65ta_range_rad\x18\x01 \x01(\x01\x12\x17\n\x0f\x61lpha_range_rad\x18\x02 \x01(\x01\x12\r\n\x05\x64_min\x18\x03 \x01(\x01\x12\r\n\x05\x64_max\x18\x04 \x01(\x01\x12\x12\n\nbeta_nodes\x18\x05 \x01(\r\x12\x13\n\x0b\x61lpha_nodes\x18\x06 \x01(\r\x12\x0f\n\x07\x64_nodes\x18\x07 \x01(\r\x12\x13\n\x0b\x61\x63tion_zlib\x18\x08 \x01(\x0c\x12\x0f\n\x07\x64ocking\x18\t \x01(\x08\x12\x11\n\tfunctions\x18\n \x01(\t\x12\r\n\x05theta\x18\x0b \x03(\x01\x12\x15\n\rdelay_samples\x18\x0c \x01(\x01\x12\r\n\x05noise\x18\r \x03(\x01\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
-_builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, "schemas.policy_pb2", _globals)
+_builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'schemas.policy_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
-    DESCRIPTOR._loaded_options = None
-    _globals["_POLICY"]._serialized_start = 32
-    _globals["_POLICY"]._serialized_end = 577
-    _globals["_POLICY_FINE"]._serialized_start = 324
-    _globals["_POLICY_FINE"]._serialized_end = 577
+  DESCRIPTOR._loaded_options = None
+  _globals['_POLICY']._serialized_start=32
+  _globals['_POLICY']._serialized_end=577
+  _globals['_POLICY_FINE']._serialized_start=324
+  _globals['_POLICY_FINE']._serialized_end=577
 # @@protoc_insertion_point(module_scope)

@@ -7,37 +7,9 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Policy(_message.Message):
-    __slots__ = (
-        "version",
-        "method",
-        "beta_cells",
-        "alpha_cells",
-        "beta_range_rad",
-        "alpha_range_rad",
-        "action",
-        "value",
-        "table_sha256",
-        "transitions",
-        "action_v_mps",
-        "action_omega_radps",
-        "fine",
-    )
+    __slots__ = ("version", "method", "beta_cells", "alpha_cells", "beta_range_rad", "alpha_range_rad", "action", "value", "table_sha256", "transitions", "action_v_mps", "action_omega_radps", "fine")
     class Fine(_message.Message):
-        __slots__ = (
-            "beta_range_rad",
-            "alpha_range_rad",
-            "d_min",
-            "d_max",
-            "beta_nodes",
-            "alpha_nodes",
-            "d_nodes",
-            "action_zlib",
-            "docking",
-            "functions",
-            "theta",
-            "delay_samples",
-            "noise",
-        )
+        __slots__ = ("beta_range_rad", "alpha_range_rad", "d_min", "d_max", "beta_nodes", "alpha_nodes", "d_nodes", "action_zlib", "docking", "functions", "theta", "delay_samples", "noise")
         BETA_RANGE_RAD_FIELD_NUMBER: _ClassVar[int]
         ALPHA_RANGE_RAD_FIELD_NUMBER: _ClassVar[int]
         D_MIN_FIELD_NUMBER: _ClassVar[int]
@@ -64,23 +36,7 @@ class Policy(_message.Message):
         theta: _containers.RepeatedScalarFieldContainer[float]
         delay_samples: float
         noise: _containers.RepeatedScalarFieldContainer[float]
-        def __init__(
-            self,
-            beta_range_rad: _Optional[float] = ...,
-            alpha_range_rad: _Optional[float] = ...,
-            d_min: _Optional[float] = ...,
-            d_max: _Optional[float] = ...,
-            beta_nodes: _Optional[int] = ...,
-            alpha_nodes: _Optional[int] = ...,
-            d_nodes: _Optional[int] = ...,
-            action_zlib: _Optional[bytes] = ...,
-            docking: _Optional[bool] = ...,
-            functions: _Optional[str] = ...,
-            theta: _Optional[_Iterable[float]] = ...,
-            delay_samples: _Optional[float] = ...,
-            noise: _Optional[_Iterable[float]] = ...,
-        ) -> None: ...
-
+        def __init__(self, beta_range_rad: _Optional[float] = ..., alpha_range_rad: _Optional[float] = ..., d_min: _Optional[float] = ..., d_max: _Optional[float] = ..., beta_nodes: _Optional[int] = ..., alpha_nodes: _Optional[int] = ..., d_nodes: _Optional[int] = ..., action_zlib: _Optional[bytes] = ..., docking: _Optional[bool] = ..., functions: _Optional[str] = ..., theta: _Optional[_Iterable[float]] = ..., delay_samples: _Optional[float] = ..., noise: _Optional[_Iterable[float]] = ...) -> None: ...
     VERSION_FIELD_NUMBER: _ClassVar[int]
     METHOD_FIELD_NUMBER: _ClassVar[int]
     BETA_CELLS_FIELD_NUMBER: _ClassVar[int]
@@ -107,19 +63,4 @@ class Policy(_message.Message):
     action_v_mps: _containers.RepeatedScalarFieldContainer[float]
     action_omega_radps: _containers.RepeatedScalarFieldContainer[float]
     fine: Policy.Fine
-    def __init__(
-        self,
-        version: _Optional[int] = ...,
-        method: _Optional[str] = ...,
-        beta_cells: _Optional[int] = ...,
-        alpha_cells: _Optional[int] = ...,
-        beta_range_rad: _Optional[float] = ...,
-        alpha_range_rad: _Optional[float] = ...,
-        action: _Optional[bytes] = ...,
-        value: _Optional[_Iterable[float]] = ...,
-        table_sha256: _Optional[bytes] = ...,
-        transitions: _Optional[int] = ...,
-        action_v_mps: _Optional[_Iterable[float]] = ...,
-        action_omega_radps: _Optional[_Iterable[float]] = ...,
-        fine: _Optional[_Union[Policy.Fine, _Mapping]] = ...,
-    ) -> None: ...
+    def __init__(self, version: _Optional[int] = ..., method: _Optional[str] = ..., beta_cells: _Optional[int] = ..., alpha_cells: _Optional[int] = ..., beta_range_rad: _Optional[float] = ..., alpha_range_rad: _Optional[float] = ..., action: _Optional[bytes] = ..., value: _Optional[_Iterable[float]] = ..., table_sha256: _Optional[bytes] = ..., transitions: _Optional[int] = ..., action_v_mps: _Optional[_Iterable[float]] = ..., action_omega_radps: _Optional[_Iterable[float]] = ..., fine: _Optional[_Union[Policy.Fine, _Mapping]] = ...) -> None: ...
