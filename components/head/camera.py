@@ -47,7 +47,16 @@ class Reading(NamedTuple):
 class Camera:
     """See the module."""
 
-    def __init__(self, protocol: Speech, params: PanTilt, time_ns: int) -> None:
+    def __init__(self, protocol: Speech, params: PanTilt, time_ns: int, way_s: float = 0.0) -> None:
+        """Nothing is sent yet.
+
+        Args:
+            protocol: how it is spoken to.
+            params: of the launch file.
+            time_ns: now.
+            way_s: a request is on its way for so long, beside its own bytes.
+        """
+        self._way_ns = round(way_s * _NS)
         self._protocol = protocol
         self._params = params
         self._sign = 1.0 if params.inverted else -1.0
@@ -88,7 +97,7 @@ class Camera:
         if self._open is not None or time_ns < self._due_ns:
             return None
         self._open = self._next()
-        self._asked_ns = time_ns + len(self._open.content) * _BITS * _NS // _BAUD
+        self._asked_ns = time_ns + self._way_ns + len(self._open.content) * _BITS * _NS // _BAUD
         return self._open
 
     def _next(self) -> Request:

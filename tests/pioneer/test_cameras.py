@@ -2,17 +2,21 @@
 
 import math
 import random
+import time
 
 import pytest
 
 from components.head import canon, visca
 from components.head.camera import Camera
+from components.head.devices.pan_tilt import CanonVcC4
 from components.head.ports import PanTilt
 from components.head.reply import Kind, Reply
 from components.simulator.params import Params
 from docking.starts import Start
+from schemas.head_pb2 import HeadCommand
 from tests.pioneer import cameras
 from tests.pioneer.body import Body
+from tests.pioneer.served import Serial, Served
 
 NS = 1_000_000_000
 STEP_NS = NS // 64
@@ -151,3 +155,21 @@ def test_a_canon_that_was_switched_off_is_set_up_again():
     rig.driver.aim(0.0, math.radians(58), 0.0, 0.0)
     rig.run(5.0)
     assert math.degrees(rig.readings[-1].tilt_rad) == pytest.approx(58.0, abs=0.1)
+
+
+def test_a_camera_at_a_serial_port_of_its_own_is_read_and_moved():
+    camera = cameras.Canon(lambda: None, inverted=True)
+    with Served(Serial()) as served:
+        camera.head = lambda: served.body.head
+        served.robot = camera
+        device = CanonVcC4(PanTilt(port=served.end.port, inverted=True))
+        end_s = time.monotonic() + 30.0
+        pan_rad = math.nan
+        while not abs(pan_rad - 0.3) < 0.004:
+            assert time.monotonic() < end_s
+            device.write(HeadCommand(pan_rad=0.3, tilt_rad=0.2))
+            late = device.read(0.05)
+            if late is not None:
+                pan_rad = late.message.pan_rad
+                assert 0.0 <= late.age_s < 5.0
+        device.close()

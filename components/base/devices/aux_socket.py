@@ -41,7 +41,8 @@ class AuxSocket:
         self._listener = socket.socket(socket.AF_UNIX)
         before = os.umask(0o177)
         try:
-            self._path.unlink(missing_ok=True)
+            if self._path.is_socket():  # of a process that was killed; never somebody's file
+                self._path.unlink()
             self._listener.bind(path)
         except OSError as error:
             raise DeviceError(f"aux {path} can not be made: {error.strerror or error}") from None
