@@ -22,7 +22,7 @@ from tests.pioneer.served import Serial, Served
 
 LAUNCH = Path(__file__).parents[2] / "launch" / "peoplebot.toml"
 DEADLINE_S = 120.0
-NEAR = Start(4 * DEG, -3 * DEG, 0.6)
+NEAR = Start(2 * DEG, -2 * DEG, 0.75)
 
 
 class Showing:
@@ -89,17 +89,18 @@ def launch_file(directory, port):
 
 @pytest.mark.xdist_group("session")
 def test_the_peoplebot_docks_and_picks_up(tmp_path, robot):
-    settings = ["pilot.train_s=0", "pilot.evaluation_trials=1", "pilot.evaluation_controller=lc",
-                "pilot.evaluation_reset=place"]  # fmt: skip
+    settings = ["pilot.train_s=0", "pilot.evaluation_trials=3", "pilot.evaluation_controller=lc"]
     system = load(launch_file(tmp_path, robot.end.port), settings, recording=tmp_path / "session.mcap")
     deadline_s = time.monotonic() + DEADLINE_S
-    held = False
-    with Supervisor(system) as supervisor:
+    held, trials = False, set()
+    supervisor = Supervisor(system)
+    supervisor.watch("pilot/trial", lambda trial, _: trials.add((trial.number, trial.mode, trial.outcome)))
+    with supervisor:
         while supervisor.poll(0.1) and not held:
-            assert time.monotonic() < deadline_s
+            assert time.monotonic() < deadline_s, trials
             with robot.turn:
                 held = robot.body.gripper.holding
-    assert held, supervisor.end_reason
+    assert held, (supervisor.end_reason, trials)
     assert robot.body.gripper.holding
     assert not robot.body.collided
     assert robot.v_mps == 0.0
