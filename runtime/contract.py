@@ -104,8 +104,8 @@ class DeviceKind:
     usage: str = ""
     """What a person must know to use it, shown while the session runs."""
     rest: str = ""
-    """`module:function` of the parameters that brings it to rest without its driver, within a second; never raises.
-    The supervisor calls it when the driver's process has died."""
+    """`module:function` of the parameters that brings it to rest without its driver, within a second. The supervisor
+    calls it when the driver's process has died."""
 
 
 class Late(NamedTuple):

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
-from runtime.contract import Device, DeviceKind
+from runtime.contract import ComponentError, Device, DeviceKind
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
+
+
+_REST_S = 1.5
+"""A device that can not be brought to rest within this is left to its own watchdog."""
 
 
 @dataclass(frozen=True)
@@ -74,12 +80,18 @@ def opened(spec: ComponentSpec, file: str) -> Device | None:
 
 
 def lay_to_rest(spec: ComponentSpec) -> None:
-    """Bring a component's device to rest after the component's process has died."""
+    """Bring a component's device to rest after the component's process has died; wait for it a moment at the most."""
     kind = kind_of(spec)
-    if kind is None or not kind.rest:
-        return
+    if kind is not None and kind.rest:
+        thread = threading.Thread(target=_rest, args=(kind, spec), daemon=True, name="rest")
+        thread.start()
+        thread.join(_REST_S)
+
+
+def _rest(kind: DeviceKind, spec: ComponentSpec) -> None:
     module, _, name = kind.rest.partition(":")
-    getattr(importlib.import_module(module), name)(build(kind.params, _without_kind(spec.device), spec.name))
+    with contextlib.suppress(ComponentError, OSError):  # it is gone, too
+        getattr(importlib.import_module(module), name)(build(kind.params, _without_kind(spec.device), spec.name))
 
 
 def _without_kind(table: Mapping[str, Any]) -> dict[str, Any]:
