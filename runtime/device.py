@@ -13,7 +13,6 @@ from runtime.contract import ComponentError, Device, DeviceKind
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
 
-
 _REST_S = 1.5
 """A device that can not be brought to rest within this is left to its own watchdog."""
 

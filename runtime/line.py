@@ -11,12 +11,14 @@ from urllib.parse import urlsplit
 
 import serial
 
+from runtime.contract import DeviceError
+
 _BYTES = 4096
 _CONNECT_S = 0.5
 """A host that does not answer within this is told as gone."""
 
 
-class LineError(Exception):
+class LineError(DeviceError):
     """The line can not be opened, or has ended; in words."""
 
 
