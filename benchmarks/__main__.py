@@ -15,6 +15,7 @@ from benchmarks.figure import Figure
 
 BENCHMARKS = {
     "render": "one camera frame: rendered, encoded, decoded, understood",
+    "vision": "the table's edge with a stripe and without one: error, frames lost, cost",
     "sweep": "the sweep kernel against C, and robot-seconds learned per core-second",
     "tracking": "error of the tracker and of the percept, in the loop with rendered images",
     "speed": "lockstep on the bus and in one process against real time",
@@ -28,7 +29,7 @@ BENCHMARKS = {
     "pioneer": "the learned policy through a Pioneer's serial protocol beside the direct simulation, 200 paired starts",
     "hardware": "wrong signs, units, beams and latencies: found and put right, by small motions; false alarms",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
-    "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts, two controllers",
+    "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts",
 }
 """Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
 

@@ -64,6 +64,8 @@ class Params:
     """A wall along the table's edge, this far from the object on the robot's side; 0 = none."""
     rear_reach_m: float = not_negative(0.0)
     """Longest free way that the range sensor behind tells of; 0 = the robot has no such sensor."""
+    stripe: bool = True
+    """False: the front of the table's edge is plain, as most tables are."""
     stripe_height_m: float = positive(0.03)
     """Orange stripe on the vertical front of the table's edge. Ours."""
     object_diameter_m: float = positive(0.066)

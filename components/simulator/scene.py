@@ -127,7 +127,8 @@ def _room(params: Params) -> list[Side]:
     rug = [(flat((-2.4, -0.9), (-1.9, -0.7), FLOOR_Z_M), RUG)]
     stripe = upright(edge_m, y, (top_m - params.stripe_height_m, top_m))
     apron = upright(edge_m, y, (top_m - params.stripe_height_m - 0.05, top_m - params.stripe_height_m))
-    table = [(flat((edge_m, edge_m + params.table_depth_m), y, top_m), TABLE), (apron, APRON), (stripe, STRIPE)]
+    painted = STRIPE if params.stripe else APRON
+    table = [(flat((edge_m, edge_m + params.table_depth_m), y, top_m), TABLE), (apron, APRON), (stripe, painted)]
     return floor + (rug + _posters(front) if params.distractors else []) + table
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.vision import blob, edge
+from components.vision import blob, edge, hough
 from components.vision.blob import Blob
 from components.vision.colour import Thresholds
 from components.vision.params import Params
@@ -49,18 +49,29 @@ class Eyes:
     def look(self, image: NDArray[np.uint8]) -> Sight:
         """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
         is_object, is_stripe = self._thresholds.masks(image)
-        spot = self._spot(blob.largest(is_object, self._params.pool))
-        return Sight(spot, self._border(blob.largest(is_stripe, self._params.pool), spot.u_px if spot else 0.0))
+        thing = blob.largest(is_object, self._params.pool)
+        spot = self._spot(thing)
+        if self._params.edge == "hough":
+            return Sight(spot, self._hough(image, thing, spot) if thing and spot else None)
+        return Sight(spot, self._stripe(blob.largest(is_stripe, self._params.pool), spot.u_px if spot else 0.0))
 
     def _spot(self, patch: Blob | None) -> Spot | None:
         if patch is None or patch.pixels < self._params.object_pixels_min * self._params.scale**2:
+            return None
+        if not self._cut_off(patch) and patch.pixels < self._params.object_whole_pixels_min * self._params.scale**2:
             return None
         if patch.pixels < self._params.object_fill_min * patch.mask.size:
             return None
         column, row = blob.median(patch)
         return Spot(column - self._middle, row - self._half, patch.pixels)
 
-    def _border(self, stripe: Blob | None, u_px: float) -> Border | None:
+    def _cut_off(self, patch: Blob) -> bool:
+        """Whether the image's border may hide a part of it."""
+        rows, columns = patch.mask.shape
+        right, low = self._params.width_px - patch.left_px - columns, self._params.height_px - patch.top_px - rows
+        return bool(min(patch.left_px, patch.top_px, right, low) <= 0)
+
+    def _stripe(self, stripe: Blob | None, u_px: float) -> Border | None:
         if stripe is None or stripe.pixels < self._params.edge_pixels_min * self._params.scale**2:
             return None
         if max(stripe.mask.shape) < self._params.edge_length_min_px * self._params.scale:
@@ -68,4 +79,12 @@ class Eyes:
         line = edge.line(stripe, self._params.height_px, self._params.width_px)
         if line is None:
             return None
-        return Border(line.slope, line.row_at(self._middle + u_px) - self._half, stripe.pixels)
+        return self._border(line, u_px, stripe.pixels)
+
+    def _hough(self, image: NDArray[np.uint8], thing: Blob, spot: Spot) -> Border | None:
+        length_min_px = self._params.edge_length_min_px * self._params.scale
+        found = hough.edge(image, thing, self._middle + spot.u_px, length_min_px)
+        return found and self._border(found.line, spot.u_px, len(found.pixels))
+
+    def _border(self, line: edge.Line, u_px: float, pixels: int) -> Border:
+        return Border(line.slope, line.row_at(self._middle + u_px) - self._half, pixels)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from runtime.params import between, positive, ruled
+from runtime.params import between, one_of, positive, ruled
 
 
 @dataclass(frozen=True)
@@ -15,6 +15,8 @@ class Params:
     """Images of any other size are refused, before they are decoded."""
     height_px: int = ruled(240, "a multiple of 8 between 48 and 1440", lambda px: 48 <= px <= 1440 and px % 8 == 0)
     """As above."""
+    edge: str = one_of("stripe", "stripe", "hough")
+    """How the table's edge is found: by the stripe on its front, or as the first long line below the object."""
     green_over_others: int = between(36, 1, 254)
     """Object: green exceeds the larger of red and blue by at least this, of 255. Tuned in simulation."""
     red_over_green: int = between(40, 1, 254)
@@ -23,6 +25,9 @@ class Params:
     """... and green exceeds blue by at least this: orange, neither red nor yellow. Tuned in simulation."""
     object_pixels_min: int = positive(30)
     """Fewer pixels in an image 320 wide are not the object. A can 2.5 m away has 150."""
+    object_whole_pixels_min: int = positive(30)
+    """Nor are fewer that the image's border does not cut off: 90 for a room with small green things, of which one of
+    1 cm has 84 from 0.27 m; a can 2.5 m away has 150."""
     object_fill_min: float = between(0.4, 0.0, 1.0)
     """Nor is a patch that fills less of its box, such as leaves. A can in a pooled box has 0.5 and more."""
     edge_pixels_min: int = positive(60)
