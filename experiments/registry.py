@@ -11,6 +11,7 @@ from runtime.params import ConfigurationError
 
 EXPERIMENTS: Mapping[str, str] = {
     "ceiling": "experiments.ceiling",
+    "paper-robot": "experiments.paper_robot",
     "docking-law": "experiments.law_comparison",
     "trajectories": "experiments.trajectories",
     "table2": "experiments.table2",
