@@ -98,4 +98,5 @@ def _opened(port: str, baud: int) -> serial.Serial | socket.socket:
 
 
 def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error) or type(error).__name__
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if isinstance(number, int) else str(error) or type(error).__name__

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -24,16 +22,18 @@ from runtime.keeper import Keeper
 from runtime.link import Link
 from runtime.live import HOLD_KEY
 from runtime.meeting import Meeting
+from runtime.member import Death, Member, kill_who_stays
 from runtime.outlet import Outlet
 from runtime.presence import LISTENS, STARTS, Presence, watch
 from runtime.qos import JOURNAL
 from runtime.restart import Restarts
 from runtime.runfile import Run, claim
+from runtime.standstill import Standstill
 from runtime.system import ComponentSpec, System
 from runtime.tap import known_keys
 from runtime.watcher import Watcher
 from runtime.wire import new_run
-from runtime.wishes import EPOCH, GO_ON, PAUSE, PAUSE_S, Wishes
+from runtime.wishes import EPOCH, GO_ON, PAUSE, Wishes
 from schemas.session_pb2 import Hold, Status
 
 NAME = "supervisor"
@@ -43,28 +43,7 @@ _OTHERS_S = 1.5
 """After a session's end: how long this host's taps hear what the other hosts still say."""
 _RESET_S = 10.0
 """Time for the folds to stop before a new epoch; nothing moves meanwhile, so nobody needs to be killed for it."""
-_GUEST = "a guest"
-"""Who asked for a pause, among the names of those for whom time is held."""
 _POLL_S = 0.01
-
-
-@dataclass(frozen=True)
-class Death:
-    """A process that ended although nobody had asked it to."""
-
-    name: str
-    exit_code: int
-    words: str
-    restarted: bool
-
-
-@dataclass
-class _Member:
-    spec: ComponentSpec
-    restarts: Restarts
-    child: Child
-    due_s: float | None = None
-    """Monotonic time of the next start, while it is down."""
 
 
 class Supervisor:
@@ -101,14 +80,12 @@ class Supervisor:
         self._bus_run = new_run()
         self._meeting = Meeting(system, self._bus_run, self._end_everywhere, self._failed)
         self._ends_everywhere = False
-        self._members: list[_Member] = []
+        self._members: list[Member] = []
         self._resources = ExitStack()
         self._watched: dict[str, Callable[[Any, int], None]] = {}
         self._run: Run | None = None
-        self._hold: Outlet | None = None
-        self._holding: set[str] = set()
+        self._standstill: Standstill | None = None
         self._wishes = Wishes()
-        self._paused_until_s = 0.0
         self._failure: BaseException | None = None
         self._origin_ns = 0
         self.end_reason = ""
@@ -123,6 +100,12 @@ class Supervisor:
         if self._run is None:
             raise RuntimeError("start() comes first")
         return self._run
+
+    @property
+    def _time(self) -> Standstill:
+        if self._standstill is None:
+            raise RuntimeError("start() comes first")
+        return self._standstill
 
     @property
     def exit_code(self) -> int:
@@ -176,11 +159,11 @@ class Supervisor:
         describe(self._run, Assignment(system, "", self._names, self._endpoint, self._origin_ns, started))
         for spec in self._specs:
             restarts = Restarts(spec.restart, spec.restart_limit)
-            self._members.append(_Member(spec, restarts, self._spawn(spec, 0)))
+            self._members.append(Member(spec, restarts, self._spawn(spec, 0)))
 
     def _open_bus(self, session: zenoh.Session) -> None:
         realm = self._system.realm
-        self._hold = Outlet(session, realm, HOLD_KEY, Hold, JOURNAL, self._bus_run)
+        self._standstill = Standstill(Outlet(session, realm, HOLD_KEY, Hold, JOURNAL, self._bus_run))
         key = ready_key(realm, LISTENS, NAME, self._bus_run)
         token = session.liveliness().declare_token(key)
         self._resources.callback(lambda: token)  # lives as long as the session
@@ -246,25 +229,24 @@ class Supervisor:
             for member in self._members:
                 self._look_after(member)
             self._wishes.grant({PAUSE: self._pause, GO_ON: self._go_on, EPOCH: self._begin_epoch})
-            if _GUEST in self._holding and time.monotonic() >= self._paused_until_s:
-                self._go_on()
+            self._time.look()
             self._meeting.begun |= not set(self._presence.missing(STARTS)) & set(self._names)
             if time.monotonic() >= deadline_s:
                 break
             time.sleep(_POLL_S)
         return not self.end_reason
 
-    def _look_after(self, member: _Member) -> None:
+    def _look_after(self, member: Member) -> None:
         if member.due_s is not None:
             if time.monotonic() >= member.due_s:
                 member.due_s = None
                 member.child = self._spawn(member.spec, member.restarts.count)
         elif (code := member.child.exit_code) is not None:
             self._bury(member, code)
-        elif member.spec.name in self._holding and member.spec.name not in self._presence.missing(STARTS):
-            self._set_hold(member.spec.name, active=False)
+        elif member.spec.name in self._time and member.spec.name not in self._presence.missing(STARTS):
+            self._time.release(member.spec.name)
 
-    def _bury(self, member: _Member, code: int) -> None:
+    def _bury(self, member: Member, code: int) -> None:
         lay_to_rest(member.spec)
         words = member.child.describe_end()
         member.child.release()
@@ -273,25 +255,17 @@ class Supervisor:
         if delay_s is None:
             self.stop_soon(words)
         else:
-            self._set_hold(member.spec.name, active=True)
+            self._time.hold(member.spec.name)
             member.due_s = time.monotonic() + delay_s
-
-    def _set_hold(self, name: str, *, active: bool) -> None:
-        """In lockstep no time passes while a component is being restarted."""
-        (self._holding.add if active else self._holding.discard)(name)
-        if self._hold is not None:
-            self._hold.put(Hold(active=bool(self._holding), component=name), 0)
 
     def _pause(self) -> str:
         if self._system.clock != "lockstep":
             return f"{self._system.realm} runs in real time, which can not be held"
-        self._paused_until_s = time.monotonic() + PAUSE_S
-        self._set_hold(_GUEST, active=True)
+        self._time.pause()
         return ""
 
     def _go_on(self) -> str:
-        if _GUEST in self._holding:
-            self._set_hold(_GUEST, active=False)
+        self._time.go_on()
         return ""
 
     def _begin_epoch(self) -> str:
@@ -323,24 +297,14 @@ class Supervisor:
         while theirs - set(self._presence.missing(LISTENS)) and time.monotonic() < deadline_s:
             time.sleep(_POLL_S)
 
-    def _end(self, members: list[_Member], grace_s: float) -> None:
+    def _end(self, members: list[Member], grace_s: float) -> None:
         for member in members:
             self._note_end(member)
-            member.child.send(signal.SIGTERM)
-        if not _wait(members, grace_s):
-            for member in members:
-                if member.child.exit_code is None:
-                    words = f"{member.spec.name} did not stop within {grace_s} s and was killed"
-                    self.deaths.append(Death(member.spec.name, -signal.SIGKILL, words, restarted=False))
-                member.child.send(signal.SIGKILL)
-            _wait(members, grace_s)
-            for member in members:
-                if member.child.exit_code == -signal.SIGKILL:
-                    lay_to_rest(member.spec)
+        self.deaths += kill_who_stays(members, grace_s)
         for member in members:
             member.child.release()
 
-    def _note_end(self, member: _Member) -> None:
+    def _note_end(self, member: Member) -> None:
         """Whoever ended since the last look ended unasked, too."""
         code = member.child.exit_code
         if code is not None and member.due_s is None and not any(d.name == member.spec.name for d in self.deaths):
@@ -364,12 +328,3 @@ class Supervisor:
 
 def _topics(system: System) -> dict[str, str]:
     return {key: schema.DESCRIPTOR.full_name for key, schema, _ in known_keys(system)}
-
-
-def _wait(members: list[_Member], timeout_s: float) -> bool:
-    deadline_s = time.monotonic() + timeout_s
-    while any(member.child.exit_code is None for member in members):
-        if time.monotonic() >= deadline_s:
-            return False
-        time.sleep(_POLL_S)
-    return True

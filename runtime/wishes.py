@@ -12,6 +12,8 @@ from runtime.contract import ComponentError
 from runtime.foreign_thread import keep_thread_state
 
 PAUSE, GO_ON, EPOCH = "pause", "go-on", "epoch"
+_MOST = 16
+"""So many wait for the supervisor; who asks beyond is refused."""
 PAUSE_S = 2.0
 """Time goes on after so long by itself: who asked may have died."""
 
@@ -36,7 +38,11 @@ class Wishes:
 
     def _take(self, wish: str, query: zenoh.Query) -> None:
         keep_thread_state()
-        self._waiting.append((wish, query))
+        if len(self._waiting) < _MOST:
+            self._waiting.append((wish, query))
+        else:
+            with query:
+                query.reply_err(f"{_MOST} others wait already")
 
     def grant(self, grants: Mapping[str, Callable[[], str]]) -> None:
         """Do what was asked for and answer.

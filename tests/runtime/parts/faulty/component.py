@@ -7,7 +7,7 @@ from schemas.drive_pb2 import BaseCommand
 from schemas.session_pb2 import SessionEnd
 from tests.runtime.parts.faulty import ports
 
-WORDS = {f"word {number}" for number in range(64)}
+WORDS = {f"word {number}" for number in range(4096)}
 
 
 class Faulty:
