@@ -51,8 +51,7 @@ class Robot:
     def reset(self):
         """As after its reset button: waits for SYNC0, at rest, counters at zero."""
         self.step, self.open, self.motors = 0, False, False
-        self.speed_mmps = self.turn_degps = 0
-        self.wheels = None
+        self._stop(None)
         self.heard_ns = self.cycle_ns = None
         self.zero = self.body.odometry.triple
         self.gripper_stream = self.sonar = False
@@ -106,7 +105,24 @@ class Robot:
         if self.wheels is not None:
             left, right = self.wheels
             return 0.5 * (left + right), 0.5 * (right - left) * 6.0
-        return self.speed_mmps * 1e-3, math.radians(self.turn_degps)
+        return self._speed_mps(), self._turn_radps()
+
+    def _speed_mps(self):
+        """That of VEL, or towards the way that MOVE has named."""
+        if self.way_m is None:
+            return self.speed_mmps * 1e-3
+        return min(max(self.way_m - self._way_m(), -0.3), 0.3)
+
+    def _turn_radps(self):
+        """That of RVEL, or towards the heading that HEAD or DHEAD has named."""
+        if self.heading_rad is None:
+            return math.radians(self.turn_degps)
+        missing = math.remainder(self.heading_rad - self._odometry()[2], 2 * math.pi)
+        return min(max(2 * missing, -0.5), 0.5)
+
+    def _way_m(self):
+        x, y, heading = self._odometry()
+        return x * math.cos(heading) + y * math.sin(heading)
 
     def _say(self, payload):
         self.out += packet(payload)
@@ -120,7 +136,7 @@ class Robot:
             self._sync(payload)
             return
         self.heard_ns = time_ns
-        if command in _OBEYED:
+        if command in _OBEYED and (value is not None or command in _BARE):
             _OBEYED[command](self, value)
         elif command in {43, 67}:
             self._ask(1 if command == 43 else 2, value)
@@ -133,10 +149,22 @@ class Robot:
         self.motors = value == 1 and not self.stop_button
 
     def _speed(self, value):
-        self.speed_mmps, self.wheels = value, None
+        self.speed_mmps, self.wheels, self.way_m = value, None, None
 
     def _turn(self, value):
-        self.turn_degps, self.wheels = value, None
+        self.turn_degps, self.wheels, self.heading_rad = value, None, None
+
+    def _move(self, value):
+        self.way_m, self.wheels = self._way_m() + value * 1e-3, None
+
+    def _head(self, value):
+        self.heading_rad, self.wheels = math.radians(value), None
+
+    def _turn_by(self, value):
+        self._head(math.degrees(self._odometry()[2]) + value)
+
+    def _set_origin(self, _value):
+        self.zero = self.body.odometry.triple
 
     def _both_wheels(self, value):
         sides = (value & 0xFFFF).to_bytes(2, "big")
@@ -144,7 +172,7 @@ class Robot:
 
     def _stop(self, _value):
         self.speed_mmps = self.turn_degps = 0
-        self.wheels = None
+        self.wheels = self.way_m = self.heading_rad = None
 
     def _tell_gripper(self, value):
         self.gripper_stream = value > 1
@@ -204,9 +232,15 @@ class Robot:
 _OBEYED = {
     2: lambda robot, _: robot.reset(),
     4: Robot._enable,
+    7: Robot._set_origin,
+    8: Robot._move,
+    9: Robot._turn,
     11: Robot._speed,
+    12: Robot._head,
+    13: Robot._turn_by,
     18: lambda robot, _: robot._say(robot._config()),
     21: Robot._turn,
+    22: Robot._turn_by,
     28: Robot._switch_sonar,
     29: Robot._stop,
     32: Robot._both_wheels,
@@ -215,3 +249,5 @@ _OBEYED = {
     55: Robot._stop,
 }
 """Number of a command -> what it does."""
+_BARE = {2, 7, 18, 29, 55}
+"""Those that need no number."""

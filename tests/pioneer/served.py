@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import os
 import select
@@ -15,6 +16,7 @@ import tty
 from components.simulator.params import Params
 from docking.starts import Start
 from tests.pioneer.body import Body
+from tests.pioneer.cameras import Canon, Sony
 from tests.pioneer.robot import Robot
 
 STEP_NS = 1_000_000_000 // 64
@@ -137,9 +139,15 @@ class Served:
 
 
 def main():
-    """Serve until interrupted: `--port 8101`, or a pseudo-terminal."""
-    end = Network(int(sys.argv[2])) if sys.argv[1:2] == ["--port"] else Serial()
-    with Served(end):
+    """Serve until interrupted, at a pseudo-terminal or, with `--port 8101`, over TCP; a camera at its AUX port."""
+    asked = argparse.ArgumentParser(prog="python -m tests.pioneer.served", description=main.__doc__)
+    asked.add_argument("--port", type=int)
+    asked.add_argument("--camera", choices=("canon", "sony"), default="canon")
+    options = asked.parse_args()
+    body = Body(Params(), Start(0.0, 0.0, 50.0), 0)
+    camera = {"canon": Canon, "sony": Sony}[options.camera](lambda: body.head)
+    end = Serial() if options.port is None else Network(options.port)
+    with Served(end, body, cameras={1: camera}):
         sys.stdout.write(f"a robot is at {end.port}\n")
         sys.stdout.flush()
         with contextlib.suppress(KeyboardInterrupt):

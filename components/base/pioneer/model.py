@@ -25,6 +25,7 @@ TURN_UNIT_RAD = 2.0 * math.pi / 4096
 DEFAULT = "peoplebot-sh"
 MODELS: Mapping[str, Model] = {
     "peoplebot-sh": Model(),
+    "p3dx-sh": Model(turn=0.0056),
     "perfpb": Model(distance_mm=0.485),
     "perfpb+": Model(distance_mm=0.485),
     "p2pp": Model(distance_mm=0.485, range_mm=0.268),
