@@ -40,6 +40,8 @@ class Robot:
     empty_sonar: bool = False
     """As above: 24 sonar readings are announced and none is sent."""
     stop_button: bool = False
+    strict: bool = False
+    """As above: a packet other than the next SYNC spoils the handshake for good."""
     deaf: bool = False
     """Hears nothing and says nothing: the cable is pulled, or it hangs."""
 
@@ -133,6 +135,8 @@ class Robot:
             value = (payload[2] + 256 * payload[3]) * (1 if payload[1] == 0x3B else -1)
         self.received.append((time_ns, command, value))
         if not self.open:
+            if self.strict and self.step < 3 and payload != bytes((self.step,)):
+                self.step = 11
             self._sync(payload)
             return
         self.heard_ns = time_ns
@@ -188,7 +192,7 @@ class Robot:
             self.aux[port] = b""
 
     def _sync(self, payload):
-        if payload == b"\x00":
+        if payload == b"\x00" and self.step < 11:
             self.step = 1
             self._say(b"\x00")
         elif payload == b"\x01" and self.step == 1:

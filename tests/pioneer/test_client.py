@@ -80,6 +80,31 @@ def test_it_connects_and_drives_as_told():
     assert last.omega_radps == pytest.approx(math.radians(10), abs=0.01)
 
 
+def test_over_a_network_it_says_nothing_but_the_handshake_to_a_server_that_knows_nothing_else():
+    Rig(Pioneer(port="tcp://robot:8101"), strict=True).connected()
+
+
+def test_over_a_network_too_a_robot_that_was_left_driving_is_stopped_before_anything_else():
+    params = Pioneer(port="tcp://robot:8101")
+    rig = Rig(params).connected()
+    rig.wish = Wish(0.1)
+    rig.run(2.0)
+    rig.client, rig.wish = Client(params, rig.now_ns), Wish()
+    rig.robot.received.clear()
+    rig.connected()
+    assert rig.heard(*range(256))[:3] == [(Command.VEL, 0), (Command.RVEL, 0), (Command.CLOSE, None)]
+
+
+@pytest.mark.parametrize("port", ["/dev/ttyUSB0", "tcp://robot:8101"])
+def test_a_robot_that_hears_and_is_not_heard_is_not_kept_driving(port):
+    rig = Rig(Pioneer(port=port)).connected()
+    rig.wish = Wish(0.1)
+    rig.run(2.0)
+    rig.client.take = lambda *_: None
+    rig.run(3.0)
+    assert rig.v_mps == 0.0
+
+
 def test_motors_are_enabled_only_after_a_zero_speed():
     commands = [command for command, _ in Rig().connected().heard(*range(256))]
     assert commands.index(Command.VEL) < commands.index(Command.PULSE) < commands.index(Command.ENABLE)

@@ -102,11 +102,16 @@ class Client:
         """Whether more is to be written soon."""
         return self._outbox.waits
 
-    def begin(self, time_ns: int) -> None:
-        """The line is open, and nothing is known of the robot."""
+    def begin(self, time_ns: int, fresh: bool = True) -> None:
+        """Greet the robot, of which nothing is known.
+
+        Args:
+            time_ns: now.
+            fresh: over a line that has just been opened.
+        """
         self._frames = Frames()
         self._outbox.clear()
-        self._handshake = Handshake(time_ns)
+        self._handshake = Handshake(time_ns, listens=fresh and self._params.port.startswith("tcp:"))
         self._byte_ns = time_ns
         self.advance(time_ns)
 
@@ -140,7 +145,7 @@ class Client:
             self._outbox.add(self._handshake.advance(time_ns))
         elif time_ns - self._heard_ns >= self._params.silent_s * _NS:
             self._say(f"nothing from the robot for {self._params.silent_s:g} s; connecting anew")
-            self.begin(time_ns)
+            self.begin(time_ns, fresh=False)
         elif self.config is None and time_ns - self._config_ns >= _CONFIG_NS:
             self._config_ns = time_ns
             self._outbox.add((integer(Command.CONFIG, 1),))

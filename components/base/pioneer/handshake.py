@@ -1,6 +1,8 @@
 """The handshake: three packets that the robot echoes. Pure.
 
-A robot that is still open from before sends SIPs instead; it is stopped, closed, and asked again.
+A robot that is still open from before sends SIPs instead; it is stopped, closed, and asked again. SYNC0 is its PULSE
+and would keep it driving, so it is told to rest before each of them. Over a new network connection nobody is told
+anything before SYNC0, because some servers take another packet for a failed handshake; there, what is open is heard.
 """
 
 from __future__ import annotations
@@ -15,15 +17,24 @@ _STEPS = (SYNC0, SYNC1, SYNC2)
 _PATIENCE_NS = 400_000_000
 """For an echo: SYNC2's has up to 60 bytes, 63 ms at 9600 baud."""
 _TRIES = 3
+_LISTEN_NS = 300_000_000
+"""Three cycles of an open robot."""
 
 
 class Handshake:
     """Says what to send until the robot has told its names."""
 
-    def __init__(self, time_ns: int) -> None:
+    def __init__(self, time_ns: int, listens: bool) -> None:
+        """Nothing is sent yet.
+
+        Args:
+            time_ns: now.
+            listens: first, instead of telling the robot to rest.
+        """
+        self._greeting = () if listens else REST
         self._step = 0
         self._tries = 0
-        self._due_ns = time_ns
+        self._due_ns = time_ns + (_LISTEN_NS if listens else 0)
         self.names: tuple[str, str, str] | None = None
         """(name, class, subclass), at the end."""
         self.failed = False
@@ -32,6 +43,7 @@ class Handshake:
     def take(self, payload: bytes, time_ns: int) -> tuple[bytes, ...]:
         """What to send after a packet of the robot."""
         if is_sip(payload):
+            self._greeting = REST
             self._step = self._tries = 0
             self._due_ns = time_ns + _PATIENCE_NS
             return (*REST, plain(Command.CLOSE))
@@ -53,4 +65,4 @@ class Handshake:
         self._tries += 1
         self._due_ns = time_ns + _PATIENCE_NS
         first = self._step == 0
-        return (*REST, _STEPS[0]) if first else (_STEPS[self._step],)
+        return (*self._greeting, _STEPS[0]) if first else (_STEPS[self._step],)
