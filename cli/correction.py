@@ -25,7 +25,7 @@ class Correction(NamedTuple):
 
     component: str
     param: str
-    value: float | bool
+    value: float | bool | list[float]
 
     @property
     def override(self) -> str:

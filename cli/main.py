@@ -34,6 +34,7 @@ VERBS: dict[str, str] = {
     "graph": "cli.graph:graph",
     "check": "cli.check:check",
     "tune": "cli.tune:tune",
+    "calibrate": "cli.calibrate:calibrate",
 }
 """Verb -> module:name of a function with typer's annotations, or of a `typer.Typer` with verbs of its own."""
 

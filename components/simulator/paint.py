@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from components.simulator import scene
+from components.simulator import lamp, scene
 from components.simulator.clip import clipped
 from components.simulator.params import Params
 from docking.pinhole import Array, Camera
@@ -29,7 +29,7 @@ class Painter:
     """One image after the other, from where the camera stands."""
 
     def __init__(self, params: Params) -> None:
-        self._brightness = params.brightness
+        self._gains = tuple(params.brightness * gain for gain in lamp.gains(params.light, params.lamp_k))
         shape = (params.height_px, params.width_px, 3)
         self._centre = 0.5 * np.array((params.width_px - 1, params.height_px - 1))
         self._reach = GUARD * (self._centre + 1.0) / params.scaled_focal_px
@@ -42,7 +42,7 @@ class Painter:
 
     def _paint(self, colour: Paint) -> Paint:
         """A colour under the room's light, clipped as a sensor clips it."""
-        return cast("Paint", tuple(min(255.0, part * self._brightness) for part in colour))
+        return cast("Paint", tuple(min(255.0, part * gain) for part, gain in zip(colour, self._gains, strict=True)))
 
     def image(self, camera: Camera, object_m: Array) -> Image:
         """`[height, width, 3]` blue, green, red; `object_m` is the object's centre, world `[3]`."""

@@ -131,6 +131,10 @@ class Params:
     """How much darker the darkest corner of the image is than the brightest. Ours."""
     brightness: float = between(1.0, 0.0, 2.0)
     """Factor on all colours; 1 = as painted, clipped at 2."""
+    light: float = between(1.0, 0.01, 16.0)
+    """The lamp's light against that for which the exposure was fixed."""
+    lamp_k: float = between(4000.0, 2000.0, 8000.0)
+    """The lamp's colour temperature; the camera's white balance is fixed at 4000 K."""
     distractors: bool = True
     """Coloured things on table, wall and floor that are not the object."""
     jpeg_quality: int = between(80, 1, 100)

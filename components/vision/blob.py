@@ -25,7 +25,12 @@ class Blob(NamedTuple):
 
 
 def largest(mask: Mask, pool: int) -> Blob | None:
-    """The largest patch of a mask of 0 and 255, or None.
+    """The largest patch of a mask of 0 and 255, or None."""
+    return next(iter(patches(mask, pool, 1)), None)
+
+
+def patches(mask: Mask, pool: int, most: int) -> list[Blob]:
+    """The largest patches of a mask of 0 and 255, at most so many, the largest first.
 
     Patches are told apart in an image `pool` times smaller (a divisor of both sides), in which a small pixel is set if
     any of its pixels is: several times faster, and a gap of a pixel does not tear a thin stripe.
@@ -34,13 +39,20 @@ def largest(mask: Mask, pool: int) -> Blob | None:
     pooled = cv2.resize(mask, (width // pool, height // pool), interpolation=cv2.INTER_AREA)
     x0, y0, w0, h0 = cv2.boundingRect(pooled)
     if w0 == 0:
-        return None
+        return []
     _, labels, stats, _ = cv2.connectedComponentsWithStats(pooled[y0 : y0 + h0, x0 : x0 + w0], ltype=cv2.CV_16U)
-    label = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-    x, y, w, h = stats[label, :4].tolist()
-    kept = np.uint8(255) * (np.asarray(labels)[y : y + h, x : x + w] == label)
+    order = 1 + np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")[:most]
+    whole = np.asarray(labels)
+    return [_cut_out(mask, whole, int(label), stats[label, :4].tolist(), (x0, y0), pool) for label in order]
+
+
+def _cut_out(
+    mask: Mask, labels: NDArray[np.generic], label: int, box: list[int], origin: tuple[int, int], pool: int
+) -> Blob:
+    x, y, w, h = box
+    kept = np.uint8(255) * (labels[y : y + h, x : x + w] == label)
     whole = cv2.resize(kept, (w * pool, h * pool), interpolation=cv2.INTER_NEAREST)
-    left, top = (x0 + x) * pool, (y0 + y) * pool
+    left, top = (origin[0] + x) * pool, (origin[1] + y) * pool
     patch = np.asarray(cv2.bitwise_and(mask[top : top + h * pool, left : left + w * pool], whole), np.uint8)
     return Blob(patch, left, top, cv2.countNonZero(patch))
 

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from components.vision import blob, edge, hough
 from components.vision.blob import Blob
 from components.vision.colour import Thresholds
+from components.vision.palette import Palette
 from components.vision.params import Params
+
+STRIPES = 4
+"""Patches of a learned colour that are looked at: in bright light yellow things have it too."""
 
 
 class Spot(NamedTuple):
@@ -42,18 +46,21 @@ class Eyes:
 
     def __init__(self, params: Params) -> None:
         self._params = params
-        self._thresholds = Thresholds(params)
+        learned = params.object_colour or params.table_colour
+        self._colours = Palette(params) if learned else Thresholds(params)
         self._middle = 0.5 * (params.width_px - 1)
         self._half = 0.5 * (params.height_px - 1)
 
     def look(self, image: NDArray[np.uint8]) -> Sight:
         """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
-        is_object, is_stripe = self._thresholds.masks(image)
+        is_object, is_table = self._colours.masks(image)
         thing = blob.largest(is_object, self._params.pool)
         spot = self._spot(thing)
         if self._params.edge == "hough":
             return Sight(spot, self._hough(image, thing, spot) if thing and spot else None)
-        return Sight(spot, self._stripe(blob.largest(is_stripe, self._params.pool), spot.u_px if spot else 0.0))
+        stripes = blob.patches(is_table, self._params.pool, STRIPES if self._params.table_colour else 1)
+        borders = (self._stripe(stripe, spot.u_px if spot else 0.0) for stripe in stripes)
+        return Sight(spot, next((border for border in borders if border is not None), None))
 
     def _spot(self, patch: Blob | None) -> Spot | None:
         if patch is None or patch.pixels < self._params.object_pixels_min * self._params.scale**2:
@@ -71,8 +78,8 @@ class Eyes:
         right, low = self._params.width_px - patch.left_px - columns, self._params.height_px - patch.top_px - rows
         return bool(min(patch.left_px, patch.top_px, right, low) <= 0)
 
-    def _stripe(self, stripe: Blob | None, u_px: float) -> Border | None:
-        if stripe is None or stripe.pixels < self._params.edge_pixels_min * self._params.scale**2:
+    def _stripe(self, stripe: Blob, u_px: float) -> Border | None:
+        if stripe.pixels < self._params.edge_pixels_min * self._params.scale**2:
             return None
         if max(stripe.mask.shape) < self._params.edge_length_min_px * self._params.scale:
             return None

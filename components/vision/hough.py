@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from components.vision.blob import Blob, Mask
+from components.vision.blob import Blob
 from components.vision.edge import Line
 
 Array = NDArray[np.float64]
@@ -22,13 +22,16 @@ Image = NDArray[np.uint8]
 
 WEAK, STRONG = 40.0, 80.0
 """Canny's two thresholds. A step of 20 grey levels has a gradient of 80. Tuned in simulation."""
+BRIGHT_GREY = 100.0
+"""In images whose brightest colour is darker on the mean the thresholds fall with it."""
 RHO_PX, THETA_RAD = 2.0, np.pi / 180.0
 """Cells that are voted for."""
 STEEPEST_RAD = np.deg2rad(80.0)
 """Steeper lines are not voted for."""
 VOTES_SHARE = 0.5
-"""A line needs this share of `edge_length_min_px`, and of the votes of the best line below the object, in one cell: its
-pixels are spread over a few."""
+"""A line needs this share of `edge_length_min_px` in one cell: its pixels are spread over a few."""
+BEST_SHARE = 0.3
+"""And this share of the votes of the best line below the object."""
 BELOW_PX = 3.0
 """The edge may cross the object's column so far above its lower end, which pixels hide."""
 SAME_RAD, SAME_PX = 3.0 * THETA_RAD, 4.0
@@ -49,10 +52,6 @@ GAP_SHARE = 0.15
 """The edge's pixels come so near to the object's column, in widths of the image; the object hides no more of it."""
 VERTICAL = 0.1
 """Smaller slopes of rows are no edge: nobody stands so far aside."""
-ABOVE_PX = 4
-"""So far above the edge is the table's top."""
-TABLE_MIN = 0.5
-"""Smaller shares of the table's colour above the line are not the table."""
 
 
 class Edge(NamedTuple):
@@ -63,7 +62,7 @@ class Edge(NamedTuple):
     """`[M, 2]` column, row."""
 
 
-def edge(image: Image, thing: Blob, column_px: float, length_min_px: float, table: Mask | None = None) -> Edge | None:
+def edge(image: Image, thing: Blob, column_px: float, length_min_px: float) -> Edge | None:
     """The table's edge in an image `[height, width, 3]`.
 
     Args:
@@ -71,17 +70,17 @@ def edge(image: Image, thing: Blob, column_px: float, length_min_px: float, tabl
         thing: the object.
         column_px: the object's column.
         length_min_px: of fewer pixels no edge is made.
-        table: 255 where the table's colour is, if that is known: the edge must have it above.
     """
     smooth = cv2.GaussianBlur(image, (3, 3), 0.0)
-    marks = cv2.Canny(smooth, WEAK, STRONG)
+    light = min(1.0, max(cv2.mean(smooth)[:3]) / BRIGHT_GREY)
+    marks = cv2.Canny(smooth, light * WEAK, light * STRONG)
     _forget(marks, thing)
     voted = _voted(marks, round(VOTES_SHARE * length_min_px))
     if not len(voted):
         return None
     points = np.asarray(cv2.findNonZero(marks), np.float64).reshape(-1, 2)
     foot_px = thing.top_px + len(thing.mask) - 1 - BELOW_PX
-    return _first(voted, _Marks(np.asarray(smooth, np.uint8), points, table), (column_px, foot_px), length_min_px)
+    return _first(voted, _Marks(np.asarray(smooth, np.uint8), points), (column_px, foot_px), length_min_px)
 
 
 def _voted(marks: cv2.typing.MatLike, votes_min: int) -> Array:
@@ -106,7 +105,6 @@ class _Marks(NamedTuple):
     image: Image
     points: Array
     """`[N, 2]` column, row."""
-    table: Mask | None
 
 
 def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px: float) -> Edge | None:
@@ -114,7 +112,7 @@ def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px
     rho, theta, votes = voted.T
     rows = (rho - foot[0] * np.cos(theta)) / np.sin(theta)
     below = rows > foot[1]
-    below &= votes >= VOTES_SHARE * votes[below].max(initial=0.0)
+    below &= votes >= BEST_SHARE * votes[below].max(initial=0.0)
     candidates = np.column_stack((rows, theta))[below]
     found: list[tuple[float, Edge]] = []
     for _ in range(CANDIDATES):
@@ -127,7 +125,7 @@ def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px
         if near is None or len(near.pixels) < length_min_px:
             continue
         crossing = near.line.row_at(foot[0])
-        if crossing > foot[1] and _passes(near, foot[0], marks.image) and _below_table(marks.table, near.pixels):
+        if crossing > foot[1] and _passes(near, foot[0], marks.image):
             found.append((crossing, near))
             candidates = candidates[candidates[:, 0] < crossing]
     longest = max((len(near.pixels) for _, near in found), default=0)
@@ -193,12 +191,3 @@ def _peaks(image: Image, points: Array) -> Array:
     bend = before - 2 * here + after
     shift = np.where(bend < 0, 0.5 * (before - after) / np.where(bend < 0, bend, 1), 0.0)
     return np.column_stack((points[:, 0], points[:, 1] + np.clip(shift, -1.0, 1.0)))
-
-
-def _below_table(table: Mask | None, pixels: Array) -> bool:
-    if table is None:
-        return True
-    columns, rows = pixels.T.astype(np.intp)
-    seen = rows >= ABOVE_PX
-    above = table[rows[seen] - ABOVE_PX, columns[seen]] > 0
-    return bool(np.count_nonzero(above) >= TABLE_MIN * max(1, len(above)))

@@ -6,6 +6,17 @@ from dataclasses import dataclass
 
 from runtime.params import between, one_of, positive, ruled
 
+COLOUR = "empty, or red, green, blue, each between 0 and 250, at least 30 apart"
+COLOUR_MAX = 250.0
+"""More is overexposed."""
+CONTRAST_MIN = 30.0
+"""Less between the strongest and the weakest channel is grey under some lamp."""
+
+
+def _is_colour(colour: tuple[float, ...]) -> bool:
+    in_range = len(colour) == 3 and all(0.0 <= part <= COLOUR_MAX for part in colour)
+    return not colour or (in_range and max(colour) - min(colour) >= CONTRAST_MIN)
+
 
 @dataclass(frozen=True)
 class Params:
@@ -17,6 +28,10 @@ class Params:
     """As above."""
     edge: str = one_of("stripe", "stripe", "hough")
     """How the table's edge is found: by the stripe on its front, or as the first long line below the object."""
+    object_colour: tuple[float, ...] = ruled((), COLOUR, _is_colour)
+    """Of the object in one image, learned by `berth calibrate colour`; the thresholds below are not used then."""
+    table_colour: tuple[float, ...] = ruled((), COLOUR, _is_colour)
+    """Likewise of the stripe on the table's edge; without a stripe no colour is needed."""
     green_over_others: int = between(36, 1, 254)
     """Object: green exceeds the larger of red and blue by at least this, of 255. Tuned in simulation."""
     red_over_green: int = between(40, 1, 254)
