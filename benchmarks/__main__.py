@@ -16,6 +16,7 @@ from benchmarks.figure import Figure
 BENCHMARKS = {
     "render": "one camera frame: rendered, encoded, decoded, understood",
     "vision": "the table's edge with a stripe and without one: error, frames lost, cost",
+    "lamps": "colours learned in one frame, under lamps of 2700 to 6500 K and a tenth to four times the light",
     "sweep": "the sweep kernel against C, and robot-seconds learned per core-second",
     "tracking": "error of the tracker and of the percept, in the loop with rendered images",
     "speed": "lockstep on the bus and in one process against real time",

@@ -21,6 +21,7 @@ from docking.pinhole import Array, Camera
 AWAY_M = np.array((0.0, 0.0, 60.0))
 """An object there is in no image."""
 ORIGIN_M = np.zeros(3)
+SLACK_PX = 3.0
 WIDEST_RAD = 65 * DEG
 NEAREST_M, FARTHEST_M = 0.27, 2.0
 
@@ -102,6 +103,13 @@ class Room:
         frame = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half
         inside, _ = cv2.intersectConvexConvex(outline, frame.astype(np.float32))
         return float(inside) / cv2.contourArea(outline)
+
+    def is_object(self, camera: Camera, spot: tuple[float, float, int] | None) -> bool:
+        """Whether what was seen at (u, v, pixels) is the object."""
+        rings_m, _, _ = scene.mantle(self.params)
+        points = camera.project(rings_m.reshape(-1, 3))
+        low, high = points.min(axis=0) - SLACK_PX, points.max(axis=0) + SLACK_PX
+        return spot is not None and bool(np.all((low <= spot[:2]) & (spot[:2] <= high)))
 
     def edge(self, camera: Camera, u_px: float, edge: str) -> tuple[float, float]:
         """(row, slope) at which the line that a method looks for crosses column `u_px`, by the projection alone."""
