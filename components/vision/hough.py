@@ -36,10 +36,10 @@ BELOW_PX = 3.0
 """The edge may cross the object's column so far above its lower end, which pixels hide."""
 SAME_RAD, SAME_PX = 3.0 * THETA_RAD, 4.0
 """Candidates as alike as this are the same line."""
-CANDIDATES = 6
+CANDIDATES = 8
 """That are looked at closely."""
-REACHES_PX = (3.0, 2.0, 1.5)
-"""Pixels further than this from the line are left out of the first, the second, the last fit."""
+REACHES_PX = (3.0, 3.0, 2.0, 1.5)
+"""Pixels further than this from the line are left out of the first, the second, ... the last fit."""
 TIGHT_PX = 0.75
 """A line's pixels are those nearer than this to the last fit: all of a table's, a third of those in fur or leaves."""
 LENGTH_SHARE = 0.6
@@ -119,11 +119,12 @@ def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px
         if not len(candidates):
             break
         row, angle = candidates[0]
-        alike = (np.abs(candidates[:, 0] - row) < SAME_PX) & (np.abs(candidates[:, 1] - angle) < SAME_RAD)
-        candidates = candidates[~alike]
         near = _fitted(marks.points, marks.image, Line(foot[0], row, -1.0 / np.tan(angle)))
         if near is None or len(near.pixels) < length_min_px:
+            candidates = candidates[1:]  # one that lies across two borders; those beside it may be either
             continue
+        alike = (np.abs(candidates[:, 0] - row) < SAME_PX) & (np.abs(candidates[:, 1] - angle) < SAME_RAD)
+        candidates = candidates[~alike]
         crossing = near.line.row_at(foot[0])
         if crossing > foot[1] and _passes(near, foot[0], marks.image):
             found.append((crossing, near))
@@ -160,14 +161,15 @@ def _through(
 ) -> tuple[tuple[float, float, float], Array] | None:
     """((mean x, mean y, slope), pixels `[M, 2]`) of the regression of y on x, for a line that rises slowly."""
     x, y, slope = line
-    whole = points
-    near = points
+    whole = near = points
     for number, reach_px in enumerate(REACHES_PX):
+        if number == 1:
+            whole = near = points  # those that the first guess missed come back
         away = np.abs(near[:, 1] - y - slope * (near[:, 0] - x)) <= reach_px * np.hypot(1.0, slope)
         whole, near = whole[away], near[away]
         if len(near) < 2:
             return None
-        if number == 0:
+        if number == 1:
             near = _peaks(image, near)
         x, y = near.mean(axis=0).tolist()
         offsets = near[:, 0] - x
