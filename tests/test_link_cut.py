@@ -3,7 +3,6 @@
 import json
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -67,14 +66,20 @@ def story(tmp_path_factory) -> Iterator[Story]:
         words = [word for setting in SETTINGS for word in ("--set", setting)]
         halves = start(cable, directory, *words, launch=WITH_COMMANDER, record=False)
         awaits_run_file(cable.robot)
-        cable.robot.berth("record", "-o", str(directory / "robot.mcap"))
+        recorder = cable.robot.berth("record", "-o", str(directory / "robot.mcap"))
         trials = echoed(cable.robot, "pilot/trial", directory / "trials.jsonl")
         applied = echoed(cable.robot, "base/applied", directory / "applied.jsonl")
         with trials as trial, applied as command:
-            yield tell(cable, halves, trial, command, directory)
+            docked, first, cut_ns, mended_ns = tell(cable, halves, trial, command)
+            recorder.wait(30)  # it ends with the session
+            yield Story(Recording(directory / "robot.mcap"), docked, first, cut_ns, mended_ns)
 
 
-def tell(cable: Cable, halves: Halves, trial: Echo, command: Echo, directory: Path) -> Story:
+def tell(
+    cable: Cable, halves: Halves, trial: Echo, command: Echo
+) -> tuple[dict[str, object], tuple[int, int], int, int]:
+    """All of a story but its recording."""
+
     def happens(condition, seconds: float) -> None:
         assert wait_until(lambda: condition() or not halves.alive(), seconds), (trial.last(), command.last())
         assert halves.alive(), [half.communicate() for half in halves if half.poll() is not None]
@@ -94,12 +99,15 @@ def tell(cable: Cable, halves: Halves, trial: Echo, command: Echo, directory: Pa
     happens(lambda: trial.last()["frame"] >= away + AWAY_FRAMES, 30.0)
     mended_ns = session_ns(cable.robot)
     cable.mend()
-    happens(lambda: command.last()["commander"] == "teleop", 30.0)
+    happens(lambda: drives_in_frame(command.last()) > away + AWAY_FRAMES, 30.0)
     halves.interrupt()
     halves.outputs()
-    assert wait_until((directory / "robot.mcap").exists, 5)
-    robot = Recording(directory / "robot.mcap")
-    return Story(robot, docked, (first, docked["frame"]), cut_ns, mended_ns)
+    return docked, (first, docked["frame"]), cut_ns, mended_ns
+
+
+def drives_in_frame(applied: dict[str, object]) -> int:
+    """The frame in which the laptop moved the robot; -1 if it did not."""
+    return int(str(applied["frame"])) if applied["commander"] == "teleop" and applied["v_mps"] else -1
 
 
 def said(robot: Machine) -> list[str]:
