@@ -1,7 +1,6 @@
 """`berth import`: bags and folders of others become sessions; what is wrong with them is one line."""
 
 import json
-import sys
 
 import cv2
 import numpy as np
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from cli.intake import bag, ros2
 from cli.intake.picture import PictureError, Raw, announced, as_jpeg, fitting
-from cli.main import main
 from components.vision import jpeg
 from runtime.recording import Recording
 from tests.cli import bags
@@ -22,20 +20,6 @@ SMOOTH = cv2.GaussianBlur(GENERATOR.integers(0, 256, (240, 320, 3), dtype=np.uin
 """Blue, green, red, without sharp edges: JPEG changes it little."""
 JPEG = cv2.imencode(".jpg", SMOOTH)[1].tobytes()
 CAMERA = "/camera/image_raw/compressed"
-
-
-def berth(capsys, monkeypatch, *words) -> tuple[int, str, str]:
-    """Exit code, standard output, standard error of the command in this process."""
-    monkeypatch.setattr(sys, "argv", ["berth", *map(str, words)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    out, err = capsys.readouterr()
-    return left.value.code, out, err
-
-
-@pytest.fixture
-def run(capsys, monkeypatch):
-    return lambda *words: berth(capsys, monkeypatch, *words)
 
 
 def decoded(session, topic):

@@ -1,12 +1,10 @@
 """`berth run --shadow` and `berth compare`, in this process; failures in `berth info`."""
 
 import json
-import sys
 
 import numpy as np
 import pytest
 
-from cli.main import main
 from cli.policies import controller_and_file
 from cli.shadow import with_shadow
 from docking.cells import Grid
@@ -26,19 +24,6 @@ from schemas.trial_pb2 import Trial
 from tests.recorded_session import LAUNCH
 
 FRAME_NS = 125_000_000
-
-
-def berth(capsys, monkeypatch, *words):
-    monkeypatch.setattr(sys, "argv", ["berth", *map(str, words)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    out, err = capsys.readouterr()
-    return left.value.code, out, err
-
-
-@pytest.fixture
-def run(capsys, monkeypatch):
-    return lambda *words: berth(capsys, monkeypatch, *words)
 
 
 def turning(file, action):
