@@ -32,15 +32,15 @@ def driving(params=REAL):
     return base
 
 
-def test_without_a_newer_frame_the_robot_stops_300_ms_after_the_last_ones_capture():
+def test_without_a_newer_frame_the_robot_stops_within_300_ms_of_the_last_ones_capture():
     said = ticks(driving(), 1060, 1700)
-    assert said[0][0] == 1320
+    assert 1260 <= said[0][0] <= 1280, "a tick before it would be too late"
     assert all(motion(output) == (0.0, 0.0, "stale") for _, output in said)
 
 
 def test_the_stop_is_said_once_and_repeated_every_tenth_of_a_second():
     at = [ms for ms, _ in ticks(driving(), 1060, 2060)]
-    assert at == list(range(1320, 2061, 100))
+    assert at == list(range(1280, 2061, 100))
 
 
 def test_fresh_frames_never_meet_a_stop():
@@ -70,7 +70,7 @@ def test_after_a_stop_a_fresh_frame_moves_the_robot_again():
     base = driving()
     ticks(base, 1060, 1500)
     assert motion(hand(base, "pilot", GO, 1500 * MS, 1550 * MS)) == (0.1, 0.17, "pilot")
-    assert not ticks(base, 1560, 1780)
+    assert not ticks(base, 1560, 1760)
 
 
 def test_a_person_who_falls_silent_keeps_the_robot_at_rest_until_he_gives_it_back():
