@@ -7,6 +7,9 @@ import os
 import select
 import socket
 import termios
+import threading
+import time
+from collections.abc import Callable
 from urllib.parse import urlsplit
 
 import serial
@@ -82,6 +85,36 @@ class Line:
         """Let go of it, whatever is still unsent."""
         with contextlib.suppress(OSError):
             self._end.close()
+
+
+def listen(
+    line: Line | None,
+    timeout_s: float,
+    turn: threading.Lock,
+    take: Callable[[bytes, int], None],
+    lose: Callable[[LineError], None],
+) -> None:
+    """Wait for bytes, and meanwhile let another thread write.
+
+    Args:
+        line: None = there is none at the moment; the time passes all the same.
+        timeout_s: longest wait.
+        turn: held while `take` or `lose` is called, not while waiting.
+        take: gets the bytes, and the monotonic time in ns.
+        lose: gets the reason why the line has ended.
+    """
+    if line is None:
+        time.sleep(timeout_s)
+        return
+    try:
+        data = line.read(timeout_s)
+    except LineError as error:
+        with turn:
+            lose(error)
+        return
+    if data:
+        with turn:
+            take(data, time.monotonic_ns())
 
 
 def _opened(port: str, baud: int) -> serial.Serial | socket.socket:

@@ -1,7 +1,9 @@
 """One camera at one line: asks, moves, asks again; time is an argument. Pure.
 
 One request is under way at a time. A position counts for the moment at which it was asked for, however late the answer
-is. Between two positions the newest aim goes out, so that neither starves the other.
+is. Between two positions the newest aim goes out, so that neither starves the other. A camera that was read where it
+was told to be stands there until it is told to move on: nobody else moves it. So the frames of one that answers late
+need not wait for its answers, as long as it is not moved for nothing.
 """
 
 from __future__ import annotations
@@ -19,8 +21,22 @@ _AGAIN_NS = _NS // 10
 """After a busy answer."""
 _PATIENCE = 3
 """Requests without an answer after which the camera is gone."""
+_SLOW_NS = _NS // 8
+"""A camera that takes longer for an answer is moved for no less than _SLACK_RAD: after each move its place is unknown
+for the time of two answers."""
+_SLACK_RAD = math.radians(1.5)
+_SAY_NS = _NS // 20
+"""Where it stands is said again after this."""
+_SETTLE_NS = _NS // 20
+"""For speeding up and braking on the way to a target."""
+_NEAR = 2
+"""Steps from where it was told to be."""
 _BITS = 10
 _BAUD = 9600
+
+
+Steps = tuple[int, int]
+"""(pan, tilt) of the camera."""
 
 
 class Speech(Protocol):
@@ -60,8 +76,13 @@ class Camera:
         self._protocol = protocol
         self._params = params
         self._sign = 1.0 if params.inverted else -1.0
-        self._target: tuple[int, int] | None = None
-        self._told: tuple[int, int] | None = None
+        self._target: Steps | None = None
+        self._told: Steps | None = None
+        self._still: Steps | None = None
+        """Where it stands; None = unknown."""
+        self._from: Steps | None = None
+        """Where it stood before the newest move, until that has been seen to be over."""
+        self._arrives_ns = self._said_ns = self._answer_ns = 0
         self.readings: deque[Reading] = deque(maxlen=8)
         self.words: deque[str] = deque(maxlen=8)
         self._answering = False
@@ -75,7 +96,7 @@ class Camera:
         """Under way."""
         self._asked_ns = self._due_ns = time_ns
         self._unanswered = 0
-        self._told = None
+        self._told = self._still = self._from = None
         self._moved = False
 
     def aim(self, pan_rad: float, tilt_rad: float, pan_rate_radps: float, tilt_rate_radps: float) -> None:
@@ -94,20 +115,67 @@ class Camera:
         """What to send now; None = nothing."""
         if self._open is not None and time_ns >= self._asked_ns + round(self._params.answer_s * _NS):
             self._miss(time_ns)
+        if self._still is not None and time_ns - self._said_ns >= _SAY_NS:
+            self._say(self._still, time_ns)
         if self._open is not None or time_ns < self._due_ns:
             return None
-        self._open = self._next()
-        self._asked_ns = time_ns + self._way_ns + len(self._open.content) * _BITS * _NS // _BAUD
+        self._open = self._next(time_ns)
+        self._asked_ns = self._heard_ns(time_ns, self._open)
         return self._open
 
-    def _next(self) -> Request:
+    def _next(self, time_ns: int) -> Request:
         if self._setup:
             return self._setup[0]
-        if self._target is not None and self._target != self._told and not self._moved:
-            self._moved, self._told = True, self._target
-            return self._protocol.move(*self._target)
+        if self._target is not None and not self._moved and self._is_worth_a_move(self._target):
+            return self._move(self._target, time_ns)
         self._moved = False
         return self._protocol.inquire()
+
+    def _is_worth_a_move(self, target: Steps) -> bool:
+        if self._told is None or self._answer_ns <= _SLOW_NS:
+            return target != self._told
+        return self._way_rad(self._told, target, 1.0, 1.0) >= _SLACK_RAD
+
+    def _move(self, target: Steps, time_ns: int) -> Request:
+        if self._still is not None:
+            self._say(self._still, time_ns)
+        self._from, self._still = self._still, None
+        request = self._protocol.move(*target)
+        self._arrives_ns = self._heard_ns(time_ns, request) + _SETTLE_NS
+        if self._from is not None:
+            params = self._params
+            way_s = self._way_rad(self._from, target, params.pan_rate_radps, params.tilt_rate_radps)
+            self._arrives_ns += round(way_s * _NS)
+        self._moved, self._told = True, target
+        return request
+
+    def _way_rad(self, from_: Steps, to: Steps, pan_rate: float, tilt_rate: float) -> float:
+        """The longer one of both axes' ways, each over its rate."""
+        pan, tilt = (axis.angle_rad(abs(a - b)) for axis, a, b in zip(self._axes, from_, to, strict=True))
+        return max(pan / pan_rate, tilt / tilt_rate)
+
+    @property
+    def _axes(self) -> tuple[Scale, Scale]:
+        return self._protocol.pan, self._protocol.tilt
+
+    def _heard_ns(self, time_ns: int, request: Request) -> int:
+        """When the camera has the whole request."""
+        return time_ns + self._way_ns + len(request.content) * _BITS * _NS // _BAUD
+
+    def _say(self, steps: Steps, time_ns: int) -> None:
+        """Say where it was, later than what was said before."""
+        if time_ns > self._said_ns:
+            pan, tilt = (self._sign * axis.angle_rad(n) for axis, n in zip(self._axes, steps, strict=True))
+            self._said_ns = time_ns
+            self.readings.append(Reading(pan, tilt, time_ns))
+
+    def _read(self, steps: Steps) -> None:
+        """It was there when it was asked."""
+        arrived = self._told is not None and max(abs(a - b) for a, b in zip(steps, self._told, strict=True)) <= _NEAR
+        if arrived and self._from is not None and self._arrives_ns < self._asked_ns:
+            self._say(steps, self._arrives_ns)
+        self._say(steps, self._asked_ns)
+        self._still, self._from = (steps if arrived else None), None
 
     def _understand(self, reply: Reply, time_ns: int) -> None:
         if self._open is None or reply.kind == Kind.NEWS or not self._answers(reply, self._open):
@@ -116,9 +184,9 @@ class Camera:
             self._answering = True
             self.words.append("the camera answers")
         open_, self._open, self._unanswered = self._open, None, 0
+        self._answer_ns = time_ns - self._asked_ns
         if reply.kind == Kind.POSITION:
-            pan, tilt = self._protocol.pan.angle_rad(reply.pan), self._protocol.tilt.angle_rad(reply.tilt)
-            self.readings.append(Reading(self._sign * pan, self._sign * tilt, self._asked_ns))
+            self._read((reply.pan, reply.tilt))
         elif reply.kind == Kind.UNREADY:
             self.begin(time_ns)
             self._due_ns = time_ns + _AGAIN_NS
@@ -135,7 +203,7 @@ class Camera:
     def _miss(self, time_ns: int) -> None:
         """No answer has come in time. One that still comes shall not be taken for that of the next request."""
         self._protocol.forget()
-        self._open, self._told = None, None
+        self._open = self._told = self._still = self._from = None
         self._due_ns = time_ns + round(self._params.answer_s * _NS)
         self._unanswered += 1
         if self._unanswered < _PATIENCE:

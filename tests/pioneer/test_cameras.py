@@ -4,6 +4,7 @@ import math
 import random
 import time
 
+import numpy as np
 import pytest
 
 from components.head import canon, visca
@@ -122,6 +123,47 @@ def test_a_position_counts_for_when_it_was_asked_for_however_late_the_answer(nam
     assert len(rig.readings) >= 5
     for reading in rig.readings[1:]:
         assert reading.pan_rad == pytest.approx(truth[reading.time_ns // STEP_NS], abs=0.03)
+
+
+def stepping(name, answer_s):
+    """(truth, as read) of the tilt at each moment: 3 deg every 2 s, then 1 deg, which a slow camera lets be."""
+    rig = Rig(name, answer_s=answer_s).run(3.0)
+    rig.driver.aim(0.0, math.radians(5), 0.0, 0.0)
+    rig.run(4.0)
+    rig.readings.clear()
+    times, truth = [], []
+    for tilt_deg in (8, 11, 14, 11, 8, 9):
+        rig.driver.aim(0.0, math.radians(tilt_deg), 0.0, 0.0)
+        for _ in range(128):
+            times.append(rig.now_ns)
+            truth.append(math.degrees(rig.body.head.angles_rad[1]))
+            rig.run(1 / 64)
+    read = np.array([(reading.time_ns, math.degrees(reading.tilt_rad)) for reading in rig.readings])
+    known = (np.array(times) > read[0, 0]) & (np.array(times) < read[-1, 0])
+    return np.array(truth)[known], np.interp(np.array(times)[known], *read.T), np.diff(read[:, 0]) / NS
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_where_a_slow_camera_was_is_known_at_every_moment_of_a_step(name):
+    truth, read, _ = stepping(name, 0.3)
+    assert np.mean(np.abs(truth - read) < 0.15) > 0.95, "it moves for 0.3 s of 12"
+
+
+def test_a_slow_camera_that_stands_is_known_at_once_and_is_not_moved_for_little():
+    slow, quick = stepping("canon", 0.3), stepping("canon", 0.03)
+    assert slow[0][-1] == pytest.approx(8.0, abs=0.1)
+    assert quick[0][-1] == pytest.approx(9.0, abs=0.1)
+    assert np.median(slow[2]) < 0.1
+    assert np.max(slow[2]) < 0.7, "while it moves: one answer to the move, one to the question"
+
+
+def test_a_camera_that_somebody_turns_is_seen_to_be_elsewhere():
+    rig = Rig("canon", answer_s=0.3).run(3.0)
+    rig.driver.aim(0.0, 0.2, 0.0, 0.0)
+    rig.run(3.0)
+    rig.body.head.look(0.1, 0.2)
+    rig.run(1.0)
+    assert rig.readings[-1].pan_rad == pytest.approx(0.1, abs=4e-3)
 
 
 @pytest.mark.parametrize("name", CAMERAS)

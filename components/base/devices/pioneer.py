@@ -12,7 +12,7 @@ from components.base.pioneer.client import Client, Reading, Wish
 from components.base.pioneer.handshake import REST
 from components.base.ports import Pioneer
 from runtime.contract import DeviceError
-from runtime.line import Line, LineError
+from runtime.line import Line, LineError, listen
 from schemas.drive_pb2 import BaseCommand, BaseState
 
 BAUDS = (9600, 38400, 19200, 115200, 57600)
@@ -58,7 +58,8 @@ class Robot:
             left_s = until_s - time.monotonic()
             if left_s <= 0.0:
                 return None
-            self._listen(min(left_s, _SLICE_S) if self._client.waits or self._aux else left_s)
+            wait_s = min(left_s, _SLICE_S) if self._client.waits or self._aux else left_s
+            listen(self._line, wait_s, self._turn, self._client.take, self._lose)
 
     def write(self, message: BaseCommand) -> None:
         """Say what base wants; the newest word counts."""
@@ -83,22 +84,6 @@ class Robot:
     @property
     def _baud(self) -> int:
         return self._bauds[self._round % len(self._bauds)]
-
-    def _listen(self, timeout_s: float) -> None:
-        """Wait for bytes without keeping `write` waiting."""
-        line = self._line
-        if line is None:
-            time.sleep(timeout_s)
-            return
-        try:
-            data = line.read(timeout_s)
-        except LineError as error:
-            with self._turn:
-                self._lose(error)
-            return
-        if data:
-            with self._turn:
-                self._client.take(data, time.monotonic_ns())
 
     def _attend(self) -> Reading | None:
         self._client.advance(time.monotonic_ns())

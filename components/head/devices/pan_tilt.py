@@ -12,7 +12,7 @@ from components.head.canon import Canon
 from components.head.ports import PanTilt
 from components.head.visca import Visca
 from runtime.contract import DeviceError, Late
-from runtime.line import Line, LineError
+from runtime.line import Line, LineError, listen
 from schemas.head_pb2 import HeadCommand, HeadState
 
 _REOPEN_S = 0.5
@@ -46,7 +46,7 @@ class _PanTilt:
                     pan_rad, tilt_rad, time_ns = self._camera.readings.popleft()
                     age_s = max(0.0, (time.monotonic_ns() - time_ns) * 1e-9)
                     return Late(HeadState(pan_rad=pan_rad, tilt_rad=tilt_rad), age_s)
-            self._listen(min(left_s, 0.01))
+            listen(self._line, min(left_s, 0.01), self._turn, self._camera.take, self._lose)
         return None
 
     def write(self, message: HeadCommand) -> None:
@@ -75,21 +75,6 @@ class _PanTilt:
             self._line.write(header + request.content)
         except LineError as error:
             self._lose(error)
-
-    def _listen(self, timeout_s: float) -> None:
-        line = self._line
-        if line is None:
-            time.sleep(timeout_s)
-            return
-        try:
-            data = line.read(timeout_s)
-        except LineError as error:
-            with self._turn:
-                self._lose(error)
-            return
-        if data:
-            with self._turn:
-                self._camera.take(data, time.monotonic_ns())
 
     def _lose(self, error: LineError) -> None:
         if self._line is None:
