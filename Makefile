@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test setup setup-dev lint schemas lock bench clean
+.PHONY: demo test setup setup-dev lint docs docs-check schemas lock bench clean
 
 demo: setup  ## the main job: a simulated robot learns to dock, from camera images
 	$(BIN)/berth run launch/sim.toml
@@ -30,6 +30,12 @@ lint: setup-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: setup-dev  ## the documentation, into build/docs; a broken link or page is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
+
+docs-check: setup-dev  ## every command of the documentation, whole (half an hour)
+	$(BIN)/python -m tests.docs
 
 schemas: setup-dev  ## regenerate schemas/*_pb2.py
 	$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. schemas/*.proto

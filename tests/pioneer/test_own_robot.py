@@ -1,4 +1,4 @@
-"""The README's page on one's own robot, followed to the letter for a toy."""
+"""The page on one's own robot, followed to the letter for a toy."""
 
 import contextlib
 import os
@@ -19,7 +19,7 @@ from runtime.launch import load
 from runtime.supervise import Supervisor
 from tests.runtime.system import run_until
 
-README = Path(__file__).parents[2] / "README.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "own-robot.md"
 DEADLINE_S = 30.0
 
 
@@ -66,7 +66,7 @@ def toy():
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """`my_robot` as on the page; here it is not beside `components`, so it must be found."""
-    blocks = re.findall(r"```python\n# (my_robot/\w+\.py)\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    blocks = re.findall(r"```python\n# (my_robot/\w+\.py)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert [name for name, _ in blocks] == ["my_robot/toy.py", "my_robot/ports.py", "my_robot/component.py"]
     (tmp_path / "my_robot").mkdir()
     for name, content in blocks:
@@ -79,9 +79,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def launch_of(folder, toy):
-    (block,) = re.findall(
-        r'```toml\n(\[component\.base\]\nrun = "my_robot".*?)```', README.read_text("utf-8"), re.DOTALL
-    )
+    (block,) = re.findall(r'```toml\n(\[component\.base\]\nrun = "my_robot".*?)```', PAGE.read_text("utf-8"), re.DOTALL)
     tomllib.loads(block)
     block = block.replace("/dev/ttyUSB0", toy.port).replace(' grasper = "grasper/drive",', "")
     file = folder / "toy.toml"
