@@ -8,20 +8,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from components.camera.header import PictureError, Size, announced, check
 from components.vision import jpeg
 
+__all__ = ["PictureError", "Raw", "Size", "announced", "as_jpeg", "fitting"]
+
 Pixels = NDArray[np.uint8]
-Size = tuple[int, int]
-"""(width, height), px."""
-LARGEST_PX = 8192
-"""Of either side; more is refused before memory is spent on it."""
 BYTES_MAX = 48_000_000
 _QUALITY = 95
 _EYES_MAX: Size = (1920, 1440)
 _EYES_MIN: Size = (64, 48)
 _STEP_PX = 8
-_SCANS_MAX = 16
-"""Of a progressive JPEG: a small one with thousands asks for minutes of work."""
 _RAW: dict[str, tuple[int, int | None]] = {
     "bgr8": (3, None),
     "rgb8": (3, cv2.COLOR_RGB2BGR),
@@ -40,11 +37,6 @@ _RAW: dict[str, tuple[int, int | None]] = {
     "bayer_grbg8": (1, cv2.COLOR_BayerGB2BGR),
 }
 """ROS's encoding -> (bytes per pixel, OpenCV's conversion, whose Bayer names are those of the second row)."""
-_PNG = b"\x89PNG\r\n\x1a\n"
-
-
-class PictureError(Exception):
-    """Why a picture can not be used, in words for a person."""
 
 
 class Raw(NamedTuple):
@@ -81,36 +73,6 @@ def as_jpeg(data: bytes | Raw) -> tuple[Size, bytes]:
     return _encoded(_fitted(_decoded(data)))
 
 
-def announced(data: bytes) -> Size:
-    """(width, height) that a JPEG's or PNG's header announces.
-
-    Raises:
-        PictureError: neither of them, or absurd.
-    """
-    if data[: len(_PNG)] == _PNG and len(data) >= 24:
-        width, height = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
-    elif data[:2] == b"\xff\xd8":
-        width, height = _frame_size(data)
-    else:
-        raise PictureError("neither JPEG nor PNG")
-    _check(width, height)
-    return width, height
-
-
-def _frame_size(data: bytes) -> Size:
-    """What a JPEG's frame header says. A thumbnail, with a frame of its own, lies within a segment."""
-    at = 2
-    for _ in range(jpeg.SEGMENTS_MAX):
-        while data[at : at + 2] == b"\xff\xff":  # fill
-            at += 1
-        if len(data) < at + 9 or data[at] != 0xFF or data.count(b"\xff\xda") > _SCANS_MAX:
-            break
-        if data[at + 1] in jpeg.FRAMES:
-            return int.from_bytes(data[at + 7 : at + 9], "big"), int.from_bytes(data[at + 5 : at + 7], "big")
-        at += 2 + int.from_bytes(data[at + 2 : at + 4], "big")
-    raise PictureError("a JPEG without a usable header")
-
-
 def fitting(size: Size) -> tuple[int, Size]:
     """(whole number to scale down by, size that the eyes take).
 
@@ -124,13 +86,8 @@ def fitting(size: Size) -> tuple[int, Size]:
     return down, (width, height)
 
 
-def _check(width: int, height: int) -> None:
-    if not (0 < width <= LARGEST_PX and 0 < height <= LARGEST_PX):
-        raise PictureError(f"an absurd size; at most {LARGEST_PX} px a side")
-
-
 def _pixels(raw: Raw) -> Pixels:
-    _check(raw.width, raw.height)
+    check(raw.width, raw.height)
     known = _RAW.get(raw.encoding)
     if known is None:
         raise PictureError(f"unknown encoding {raw.encoding[:20]!r}")

@@ -181,7 +181,7 @@ def _system(size: Size, source: Path) -> System:
         "realm": "berth/imported",
         "session": {"clock": "real"},
         "component": {
-            "camera": {"run": "components.camera"},
+            "camera": {"run": "components.camera", "outputs": {"device": IMAGE}},
             "vision": {"run": "components.vision", "inputs": {"image": IMAGE}, "params": eyes},
         },
     }

@@ -7,15 +7,19 @@ from runtime.contract import Event, Output
 
 
 class Camera:
-    """Passes frames on. Without a device it says nothing, and `berth play --replace camera` can stand in for it."""
+    """Says nothing itself: the shell publishes what its device reads.
+
+    Without a device nothing comes, and `berth play --replace camera` can stand in for it.
+    """
 
     Params = ports.Params
     inputs = ports.INPUTS
     outputs = ports.OUTPUTS
 
     def __init__(self, params: ports.Params, seed: int) -> None:
-        del params, seed  # there is nothing to choose yet
+        del params, seed  # there is nothing to choose
 
     def handle(self, event: Event) -> tuple[Output, ...]:
-        """Pass a frame on."""
-        return (Output("image", event.message),) if event.port == "device" else ()
+        """Only the end is handed over."""
+        del event
+        return ()
