@@ -4,6 +4,7 @@ A comment right above a block of commands says how the checks treat it:
 `<!-- shortened: A => B; C => D -->` the suite puts B for A; `make docs-check` runs it as it stands;
 `<!-- setup -->` needs a fresh clone, so only `make docs-check` runs it;
 `<!-- stopped after 20 s -->` it goes on until Ctrl-C, which comes then;
+`<!-- in the background -->` it goes on until the page is done;
 `<!-- not run: why -->` it is only parsed.
 """
 
@@ -17,7 +18,7 @@ _BLOCK = re.compile(
     r"(?:^<!-- (?P<mark>[^\n]*?) -->\n)?^```(?P<kind>\w+)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 _FILE = re.compile(r"(?:#|//) ([\w/]+\.(?:py|proto|toml))\n")
-MARKS = ("shortened: ", "setup", "stopped after ", "not run: ")
+MARKS = ("shortened: ", "setup", "stopped after ", "in the background", "not run: ")
 STANDS_FOR = {"recordings/SESSION.mcap": "recordings/docking.mcap", "tcp/ROBOT:": "tcp/127.0.0.1:"}
 """Words in capitals that the reader replaces -> what the checks put there."""
 
