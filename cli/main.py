@@ -28,6 +28,7 @@ VERBS: dict[str, str] = {
     "doctor": "cli.doctor:doctor",
     "recover": "cli.recover:recover",
     "report": "cli.report:report",
+    "film": "cli.film:film",
     "goal": "cli.goal:goal",
     "view": "cli.view:view",
     "experiment": "cli.experiment:experiment",
@@ -35,6 +36,7 @@ VERBS: dict[str, str] = {
     "check": "cli.check:check",
     "tune": "cli.tune:tune",
     "calibrate": "cli.calibrate:calibrate",
+    "keys": "cli.credentials:keys",
 }
 """Verb -> module:name of a function with typer's annotations, or of a `typer.Typer` with verbs of its own."""
 

@@ -27,6 +27,7 @@ LAUNCH = Annotated[Path, typer.Argument(help="Launch file.")]
 HOST = Annotated[str, typer.Option(help="Start only the components of this host; the others run elsewhere.")]
 LISTEN = Annotated[str, typer.Option(help="Let another host's part come in here, e.g. tcp/0.0.0.0:7447.")]
 CONNECT = Annotated[str, typer.Option(help="Where another host's part listens, e.g. tcp/192.168.1.2:7447.")]
+KEYS = Annotated[str, typer.Option(help="Directory of `berth keys init`: only hosts with its keys take part.")]
 INSECURE = Annotated[bool, typer.Option("--insecure", help="Listen off loopback, open to whoever reaches it.")]
 ONLY = Annotated[str, typer.Option(help="Start only these components, with commas between.")]
 SET = Annotated[
@@ -48,6 +49,7 @@ def run(
     host: HOST = "",
     listen: LISTEN = "",
     connect: CONNECT = "",
+    keys: KEYS = "",
     insecure: INSECURE = False,
     only: ONLY = "",
     overrides: SET = None,
@@ -64,7 +66,6 @@ def run(
     """Start this host's part of a system. Example: berth run launch/sim.toml --duration 600."""
     if duration is not None and not 0.0 <= duration < float("inf"):
         raise ConfigurationError(f"--duration must be >= 0 and finite; got {duration}")
-    link = checked_link(listen, connect, insecure=insecure)
     started = now()
     system = load(
         launch,
@@ -74,7 +75,9 @@ def run(
         host=host,
         only=tuple(name for name in only.split(",") if name),
         recording=None if no_record else record or recording_name(launch, started),
+        keys=keys,
     )
+    link = checked_link(listen, connect, insecure=insecure, tls=system.security == "tls")
     if shadow:
         from cli.shadow import with_shadow  # noqa: PLC0415
 
@@ -82,6 +85,7 @@ def run(
     check_recording(system)
     check_clock(system)
     _check_hosts(system, link, in_process=in_process)
+    link = _guarded(link, system)
     with Progress(f"berth {launch}", quiet=quiet or as_json) as progress:
         watch = Watch(progress)
         failed, reason = execute(system, watch, started, duration, link, in_process=in_process)
@@ -122,6 +126,14 @@ def _check_hosts(system: System, link: Link, *, in_process: bool) -> None:
     if system.other_hosts and link == Link():
         others = ", ".join(system.other_hosts)
         raise ConfigurationError(f"--host {system.host} must come with --listen or --connect: {others} runs the rest")
+
+
+def _guarded(link: Link, system: System) -> Link:
+    if system.security == "none" or link == Link():
+        return link
+    from runtime.guard import guarded  # noqa: PLC0415
+
+    return guarded(link, system)
 
 
 def _run_in_process(system: System, watch: Watch, started: str, duration: float | None) -> tuple[bool, str]:

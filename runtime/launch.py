@@ -22,6 +22,10 @@ from runtime.toml_file import read_toml
 _REALM = re.compile(r"[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 RESTARTS = ("never", "on-failure", "always")
+SECURITIES = ("none", "tls")
+KEYS = "keys"
+"""Directory of credentials where the launch file and the command line name none."""
+_TOP = ("realm", "session", "task", "component", "security", "keys")
 _SESSION = {"clock": "lockstep", "seed": 1, "stall_s": 10.0, "end": "", "trial": "", "truth": ""}
 _COMPONENT = ("run", "host", "restart", "restart_limit", "device", "inputs", "outputs", "params")
 
@@ -35,6 +39,7 @@ def load(
     host: str = "",
     only: Collection[str] = (),
     recording: Path | None = None,
+    keys: str = "",
 ) -> System:
     """Read, check and resolve a launch file.
 
@@ -47,6 +52,7 @@ def load(
         host: the machine that this is; empty = all components run here.
         only: keep only these components, on every host; empty = all.
         recording: file for the recorder (a tap with a parameter `file`); None = leave recorders out.
+        keys: directory of credentials; given, the hosts know one another by TLS. Empty = as in the file.
 
     Raises:
         ConfigurationError: one line that names file, key, value and rule.
@@ -55,6 +61,8 @@ def load(
     shared_task.include(table, str(file))
     for override in overrides:
         _override(table, override)
+    if keys:
+        table |= {"security": "tls", "keys": keys}
     session = dict(_table(table, "session", str(file), _SESSION))
     if clock:
         session["clock"] = clock
@@ -133,11 +141,17 @@ def _table(table: Mapping[str, Any], key: str, where: str, defaults: Mapping[str
 
 def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -> System:
     for key in table:
-        if key not in {"realm", "session", "task", "component"}:
-            raise ConfigurationError(f"{file}: {key} is unknown; known are realm, session, task, component")
+        if key not in _TOP:
+            raise ConfigurationError(f"{file}: {key} is unknown; known are {', '.join(_TOP)}")
     realm = table.get("realm")
     if not isinstance(realm, str) or not _REALM.fullmatch(realm):
         raise ConfigurationError(f"{file}: realm must be words joined by /; got {realm!r}")
+    security = table.get("security", "none")
+    if security not in SECURITIES:
+        raise ConfigurationError(f"{file}: security must be one of {', '.join(SECURITIES)}; got {security!r}")
+    keys = table.get("keys", KEYS if security == "tls" else "")
+    if not isinstance(keys, str) or bool(keys) != (security == "tls"):
+        raise ConfigurationError(f'{file}: keys must be a directory, and stand with security = "tls"; got {keys!r}')
     clock, pace = _clock(session["clock"], file)
     seed, stall_s = session["seed"], session["stall_s"]
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
@@ -149,8 +163,20 @@ def _resolved(table: Mapping[str, Any], session: Mapping[str, Any], file: str) -
         raise ConfigurationError(f"{file}: component must be a table of at least one component")
     specs = tuple(_component(name, entry, _shared(table, clock), seed, file) for name, entry in components.items())
     shared_task.check_same(specs, file)
-    keys = {key: str(session[key]) for key in ("end", "trial", "truth")}
-    return System(file, realm, clock, pace, seed, float(stall_s), **keys, components=specs, text="")
+    followed = {key: str(session[key]) for key in ("end", "trial", "truth")}
+    return System(
+        file,
+        realm,
+        clock,
+        pace,
+        seed,
+        float(stall_s),
+        **followed,
+        components=specs,
+        text="",
+        security=security,
+        keys=keys,
+    )
 
 
 def _clock(value: object, file: str) -> tuple[str, float | None]:

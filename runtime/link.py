@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ipaddress
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from runtime.params import ConfigurationError
 
-_ENDPOINT = re.compile(r"tcp/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9._-]+):([0-9]{1,5})")
+_ENDPOINT = re.compile(r"(?:tcp|tls)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9._-]+):([0-9]{1,5})")
 _LEASE_MS = 1000
 """Real time: a link that is silent for so long is down."""
 _RETRY_MS = 500
@@ -27,6 +28,8 @@ class Link:
     """Endpoint, e.g. `tcp/0.0.0.0:7447`."""
     connect: str = ""
     """Endpoint of the other host's router."""
+    guard: Mapping[str, object] = field(default_factory=dict, compare=False, repr=False)
+    """Settings that let in only whom the keys and the launch file name (`runtime.guard`); empty = everybody."""
 
     def options(self, clock: str) -> dict[str, object]:
         """Settings of the router's session.
@@ -37,6 +40,7 @@ class Link:
         if self == Link():
             return {}
         options: dict[str, object] = {
+            **self.guard,
             "connect/retry": {"period_init_ms": 200, "period_max_ms": _RETRY_MS, "period_increase_factor": 1.5},
             "transport/unicast/open_timeout": _OPEN_MS,
         }
@@ -55,18 +59,27 @@ class Link:
         return options
 
 
-def checked_link(listen: str, connect: str, *, insecure: bool) -> Link:
+def checked_link(listen: str, connect: str, *, insecure: bool, tls: bool = False) -> Link:
     """A link as asked for on the command line.
+
+    Args:
+        listen: endpoint, or empty.
+        connect: endpoint, or empty.
+        insecure: whoever reaches this host may come in.
+        tls: the launch file has security; the link's guard is added later.
 
     Raises:
         ConfigurationError: no endpoint, or one that would let strangers in without being asked for.
     """
     for option, endpoint in (("--listen", listen), ("--connect", connect)):
-        if endpoint and not _ENDPOINT.fullmatch(endpoint):
-            raise ConfigurationError(f"{option} must be tcp/ADDRESS:PORT; got {endpoint[:80]!r}")
-    if listen and not insecure and not is_loopback(listen):
+        protocol, why = ("tls", " with security") if tls else ("tcp", "")
+        if endpoint and not (_ENDPOINT.fullmatch(endpoint) and endpoint.startswith(protocol)):
+            raise ConfigurationError(f"{option} must be {protocol}/ADDRESS:PORT{why}; got {endpoint[:80]!r}")
+    if tls and insecure:
+        raise ConfigurationError("--insecure must stand without security: take one or the other")
+    if listen and not (insecure or tls) and not is_loopback(listen):
         raise ConfigurationError(
-            "--listen must be on loopback, or --insecure be given too: there is no key yet, whoever reaches this "
+            "--listen must be on loopback, or stand with --keys (or --insecure): without keys whoever reaches this "
             f"endpoint can drive the robot; got {listen!r}"
         )
     return Link(listen, connect)

@@ -9,6 +9,7 @@ from pathlib import Path
 import zenoh
 
 from runtime.bus import direct
+from runtime.foreign_thread import keep_thread_state
 from runtime.neighbours import HERE, OVER, Half, Neighbours, Verdict, half_keys, parse_half
 from runtime.params import ConfigurationError
 from runtime.system import System
@@ -49,6 +50,8 @@ class Meeting:
             for state, heed in ((HERE, self._meet), (OVER, self._part)):
                 keys = half_keys(self._system.realm, state)
                 session.liveliness().declare_subscriber(keys, direct(self._receiver(heed)), history=True)
+            links = zenoh.handlers.Callback(self._look_at, indirect=False)
+            session.info.declare_link_events_listener(links, history=True)
             self._declare(HERE)
 
     def close(self) -> None:
@@ -72,6 +75,13 @@ class Meeting:
                 self._fail(failure)
 
         return receive
+
+    def _look_at(self, event: zenoh.LinkEvent) -> None:
+        """Note who has come with a key and has no part here: the access control lets it neither speak nor hear."""
+        keep_thread_state()
+        name = event.link.auth_identifier
+        if event.kind == zenoh.SampleKind.PUT and name and name not in self._system.other_hosts:
+            self._note(Verdict(f"{name} at {event.link.dst} has a key and no part in this system; it is not heard"))
 
     def _meet(self, half: Half, appeared: bool) -> None:
         verdict = self._neighbours.appear(half, begun=self.begun) if appeared else self._neighbours.vanish(half)

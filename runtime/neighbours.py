@@ -57,7 +57,7 @@ def parse_half(key: str) -> Half:
 def digest_of(system: System) -> str:
     """Of everything that must be equal on all hosts: components, wires, parameters, clock, seed; not file names."""
     table = json.loads(system.to_json())
-    for key in ("file", "host", "text"):
+    for key in ("file", "host", "keys", "text"):
         del table[key]
     for spec in table["components"]:
         spec["params"] = {k: v for k, v in spec["params"].items() if not (spec["tap"] and k == "file")}

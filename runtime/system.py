@@ -57,6 +57,10 @@ class System:
     """The resolved launch file, for the session's log."""
     host: str = ""
     """This machine, one of the components' hosts; empty = all components run here."""
+    security: str = "none"
+    """`none` or `tls`: how the hosts know one another."""
+    keys: str = ""
+    """Directory with this host's credentials, for `tls`."""
 
     @property
     def here(self) -> tuple[ComponentSpec, ...]:

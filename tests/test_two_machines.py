@@ -149,7 +149,7 @@ def test_lockstep_over_the_link_loses_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("--host", "robot", "--listen", "tcp/0.0.0.0:7447"), "--listen must be on loopback, or --insecure be given"),
+        (("--host", "robot", "--listen", "tcp/0.0.0.0:7447"), "--listen must be on loopback, or stand with --keys"),
         (("--host", "robot"), "--host robot must come with --listen or --connect: laptop runs the rest"),
         (("--listen", "tcp/127.0.0.1:7447"), "--listen and --connect must stand with --host"),
         (("--host", "laptop", "--in-process"), "--in-process must stand without --host"),

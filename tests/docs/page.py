@@ -19,7 +19,11 @@ _BLOCK = re.compile(
 )
 _FILE = re.compile(r"(?:#|//) ([\w/]+\.(?:py|proto|toml))\n")
 MARKS = ("shortened: ", "setup", "stopped after ", "in the background", "not run: ")
-STANDS_FOR = {"recordings/SESSION.mcap": "recordings/docking.mcap", "tcp/ROBOT:": "tcp/127.0.0.1:"}
+STANDS_FOR = {
+    "recordings/SESSION.mcap": "recordings/docking.mcap",
+    "tcp/ROBOT:": "tcp/127.0.0.1:",
+    "tls/ROBOT:": "tls/127.0.0.1:",
+}
 """Words in capitals that the reader replaces -> what the checks put there."""
 
 

@@ -67,12 +67,14 @@ host = "laptop"
 
 
 @contextmanager
-def on(host: str, pair: Pair, directory: Path, monkeypatch, ahead_ns: int = 0) -> Iterator[Supervisor]:
+def on(
+    host: str, pair: Pair, directory: Path, monkeypatch, ahead_ns: int = 0, link: Link | None = None
+) -> Iterator[Supervisor]:
     """One host's half, with run files of its own; its session time is ahead by so much."""
     home = directory / f"{host}-{secrets.token_hex(3)}"
     home.mkdir(mode=0o700)
-    system, link = (pair.robot, Link(pair.endpoint)) if host == "robot" else (pair.laptop, Link("", pair.endpoint))
-    supervisor = Supervisor(system, link=link)
+    system, plain = (pair.robot, Link(pair.endpoint)) if host == "robot" else (pair.laptop, Link("", pair.endpoint))
+    supervisor = Supervisor(system, link=link or plain)
     now_ns = time.monotonic_ns
     with monkeypatch.context() as patched:
         patched.setenv("XDG_RUNTIME_DIR", str(home))
