@@ -59,7 +59,7 @@ class BaseCommand(_message.Message):
     def __init__(self, v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., gripper: _Optional[_Union[GripperAction, str]] = ..., lift_reversed: _Optional[bool] = ..., fingers_reversed: _Optional[bool] = ...) -> None: ...
 
 class BaseState(_message.Message):
-    __slots__ = ("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "v_mps", "omega_radps", "bumper", "inner_beam", "outer_beam", "lift_up", "lift_down", "fingers_closed", "guard", "rear_range_m", "rear_bumper", "battery_v", "fault")
+    __slots__ = ("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "v_mps", "omega_radps", "bumper", "inner_beam", "outer_beam", "lift_up", "lift_down", "fingers_closed", "guard", "rear_range_m", "rear_bumper", "battery_v", "fault", "watchdog_s")
     ODOMETRY_X_M_FIELD_NUMBER: _ClassVar[int]
     ODOMETRY_Y_M_FIELD_NUMBER: _ClassVar[int]
     ODOMETRY_HEADING_RAD_FIELD_NUMBER: _ClassVar[int]
@@ -76,6 +76,7 @@ class BaseState(_message.Message):
     REAR_BUMPER_FIELD_NUMBER: _ClassVar[int]
     BATTERY_V_FIELD_NUMBER: _ClassVar[int]
     FAULT_FIELD_NUMBER: _ClassVar[int]
+    WATCHDOG_S_FIELD_NUMBER: _ClassVar[int]
     odometry_x_m: float
     odometry_y_m: float
     odometry_heading_rad: float
@@ -92,4 +93,5 @@ class BaseState(_message.Message):
     rear_bumper: bool
     battery_v: float
     fault: str
-    def __init__(self, odometry_x_m: _Optional[float] = ..., odometry_y_m: _Optional[float] = ..., odometry_heading_rad: _Optional[float] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., bumper: _Optional[bool] = ..., inner_beam: _Optional[bool] = ..., outer_beam: _Optional[bool] = ..., lift_up: _Optional[bool] = ..., lift_down: _Optional[bool] = ..., fingers_closed: _Optional[bool] = ..., guard: _Optional[bool] = ..., rear_range_m: _Optional[float] = ..., rear_bumper: _Optional[bool] = ..., battery_v: _Optional[float] = ..., fault: _Optional[str] = ...) -> None: ...
+    watchdog_s: float
+    def __init__(self, odometry_x_m: _Optional[float] = ..., odometry_y_m: _Optional[float] = ..., odometry_heading_rad: _Optional[float] = ..., v_mps: _Optional[float] = ..., omega_radps: _Optional[float] = ..., bumper: _Optional[bool] = ..., inner_beam: _Optional[bool] = ..., outer_beam: _Optional[bool] = ..., lift_up: _Optional[bool] = ..., lift_down: _Optional[bool] = ..., fingers_closed: _Optional[bool] = ..., guard: _Optional[bool] = ..., rear_range_m: _Optional[float] = ..., rear_bumper: _Optional[bool] = ..., battery_v: _Optional[float] = ..., fault: _Optional[str] = ..., watchdog_s: _Optional[float] = ...) -> None: ...

@@ -10,6 +10,7 @@ from typing import Any
 
 from components.pilot import ports
 from components.pilot.choice import table_of as table_of_trial
+from components.pilot.leash import leashed
 from components.pilot.messages import table_of
 from components.pilot.progress import Failure, Heard, Mode, Outcome, Phase, Progress, Wish
 from components.pilot.rules import Rules
@@ -99,7 +100,8 @@ class Pilot:
             return ()
         sight = sight_of(self._rules.task, percept.visible, percept.slope, percept.pan_rad, percept.tilt_rad)
         self._progress, wish = step(self._rules, before, Frame(capture_ns, sight, self._heard, self._table))
-        outputs = (Output("trial", self._trial(wish)), Output("drive", _drive(wish)))  # trial has the longer way
+        drive = _drive(leashed(self._rules, wish, sight, self._heard.watchdog_s))
+        outputs = (Output("trial", self._trial(wish)), Output("drive", drive))  # trial has the longer way
         if self._progress.phase == Phase.FINISHED != before.phase:
             return (*outputs, Output("end", SessionEnd(reason="finished")))
         return outputs
@@ -129,6 +131,7 @@ class Pilot:
         heard = self._heard
         if capture_ns >= heard.base_ns:
             numbers: dict[str, Any] = {name: _finite(getattr(state, name)) for name in _NUMBERS}
+            numbers["watchdog_s"] = max(0.0, _finite(state.watchdog_s))
             self._heard = replace(heard, base_ns=capture_ns, bumper=state.bumper, **numbers)
 
     def _hear_applied(self, applied: Applied, capture_ns: int) -> None:

@@ -98,6 +98,8 @@ class Heard:
     """Newest frame in which base let a command go for its age."""
     hindered_ns: int = -1
     """Newest frame in which base refused to drive further back."""
+    watchdog_s: float = 0.0
+    """For so long the robot drives on after its last command; 0 = base does not say."""
     led_ns: int = -1
     """Since when a person has been driving the robot forwards; -1 = nobody does."""
 

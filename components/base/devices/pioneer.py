@@ -175,4 +175,5 @@ def _state(reading: Reading) -> BaseState:
         rear_range_m=reading.rear_range_m,
         battery_v=reading.battery_v,
         fault=reading.fault,
+        watchdog_s=reading.watchdog_s,
     )

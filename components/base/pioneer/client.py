@@ -61,6 +61,8 @@ class Reading(NamedTuple):
     battery_v: float = 0.0
     fault: str = ""
     """Why it must not be moved; empty = it may."""
+    watchdog_s: float = 0.0
+    """Its own."""
 
 
 class Client:
@@ -167,13 +169,18 @@ class Client:
         """The smallest of ours, the robot's, and what its watchdog lets it drive unattended."""
         speed, turn = self._params.max_speed_mps, self._params.max_turn_rate_radps
         config = self.config
-        watchdog_ms = (config.watchdog_ms or _NO_WATCHDOG_MS) if config else self._params.watchdog_s * 1000
-        speed = min(speed, self._params.unattended_m * 1000 / watchdog_ms)
+        speed = min(speed, self._params.unattended_m / self._watchdog_s)
         if config is not None and config.fastest_mmps is not None:
             speed = min(speed, config.fastest_mmps * 1e-3)
         if config is not None and config.fastest_turn_degps is not None:
             turn = min(turn, config.fastest_turn_degps * 0.017453292519943295)
         return Limits(speed, turn)
+
+    @property
+    def _watchdog_s(self) -> float:
+        """The robot's own, as it has told it; one that is off is a long one."""
+        config = self.config
+        return self._params.watchdog_s if config is None else 1e-3 * (config.watchdog_ms or _NO_WATCHDOG_MS)
 
     @property
     def _pose(self) -> tuple[float, float, float]:
@@ -234,7 +241,7 @@ class Client:
         if not 0 < config.watchdog_ms <= _SLOW_WATCHDOG_MS:
             self._say(
                 f"the robot's own watchdog is {watchdog}; 500 ms or less is safer (set it in FLASH). "
-                f"Until then no faster than {self.limits.speed_mps:.2f} m/s"
+                f"Until then no faster than {self.limits.speed_mps:.3f} m/s, slower near the table"
             )
         if self._params.gripper and not config.has_gripper:
             self._say("the robot says that it has no gripper")
@@ -259,6 +266,7 @@ class Client:
             rear_range_m=self._rear_range_m(),
             battery_v=0.1 * sip.battery_dv,
             fault=fault,
+            watchdog_s=self._watchdog_s,
         )
         self._tell(time_ns, reading)
 
