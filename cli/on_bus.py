@@ -44,6 +44,7 @@ def run_on_bus(system: System, watch: Watch, duration_s: float | None, link: Lin
         _follow(supervisor, watch, waiting, duration_s)
         supervisor.stop()
     _take_all(watch, waiting)
+    watch.refused = supervisor.refused
     return supervisor.exit_code != 0, supervisor.end_reason
 
 
@@ -68,6 +69,7 @@ def _follow(supervisor: Supervisor, watch: Watch, waiting: deque[tuple[Any, int]
     while supervisor.poll(0.1):
         _take_all(watch, waiting)
         watch.note = supervisor.note
+        watch.refusal = supervisor.refusal
         watch.show()
         if watch.over:
             supervisor.stop_soon(watch.over)

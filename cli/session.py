@@ -24,6 +24,7 @@ class Summary:
     wall_s: float = 0.0
     messages: int = 0
     lost: int = 0
+    refused: int = 0
     trials: int = 0
     docked: int = 0
     picked: int = 0
@@ -44,6 +45,9 @@ class Watch:
         self.board = Scoreboard()
         self.messages = 0
         self.lost = 0
+        self.refused = 0
+        self.refusal = ""
+        """How many messages were refused, and why."""
         self.note = ""
         """What is wrong at the moment, in words."""
         self.drives = ""
@@ -61,7 +65,7 @@ class Watch:
 
     def show(self) -> None:
         """Refresh the progress if it is time to."""
-        more = {"drives": self.drives, "keys": self.usage, "note": self.note}
+        more = {"drives": self.drives, "keys": self.usage, "refused": self.refusal, "note": self.note}
         self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost, more)
 
     def summary(self, reason: str, recording: Path | None) -> Summary:
@@ -73,6 +77,7 @@ class Watch:
             wall_s=round(time.monotonic() - self._began_s, 3),
             messages=self.messages,
             lost=self.lost,
+            refused=self.refused,
             trials=len(trials),
             docked=counts["docked"],
             picked=counts["picked"],

@@ -10,6 +10,7 @@ from threading import Lock
 from typing import Any
 
 from runtime.attached import Attached
+from runtime.capture_order import CaptureOrder
 from runtime.clock import SECOND_NS, FrameClock, PacedClock, Pacer, TickSchedule
 from runtime.contract import ACTUATE, DEVICE, GONE, STALL, STOP, TICK, Device, Event, Port, Stall, Tick
 from runtime.door import FAILURE
@@ -49,6 +50,7 @@ class Fold:
         self._outlets = {outlet.key: outlet for outlet in station.outlets.ports.values()}
         self._journal = JournalWriter()
         self._newest_ns: dict[str, int] = {}
+        self._order = CaptureOrder()
         self._status_due_ns = 0
         self._heard_ns = 0
         self._holders: set[int] = set()
@@ -218,6 +220,7 @@ class Fold:
         try:
             self._check_capture(port, stamp.capture_ns)
             message = self._decoders[port](sample.payload)
+            self._order.check(port, stamp)
         except Refused as reason:
             self._station.door.refusals.add(sample.key, reason)
             return

@@ -137,6 +137,17 @@ class Supervisor:
         """Messages lost, as the components last said."""
         return sum(status.lost for status in list(self.statuses.values()))
 
+    @property
+    def refused(self) -> int:
+        """Messages that a component did not believe, as the components last said."""
+        return sum(status.malformed for status in list(self.statuses.values()))
+
+    @property
+    def refusal(self) -> str:
+        """How many messages were refused, and where and why the newest one of some component; empty = none."""
+        notes = [f"{s.component}: {s.note}" for s in list(self.statuses.values()) if s.malformed and s.note]
+        return f"{self.refused}; {notes[-1] if notes else ''}" if self.refused else ""
+
     def watch(self, key: str, call: Callable[[Any, int], None]) -> None:
         """Call with every decoded message of a key below the realm and its capture time, on zenoh's thread."""
         self._watched[key] = call

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import secrets
 import struct
 from collections.abc import Callable, Iterable
@@ -16,6 +15,10 @@ from google.protobuf.message import DecodeError
 _ATTACHMENT = struct.Struct("<QQq")
 _ENCODING = "application/protobuf;"
 _REALS = (FieldDescriptor.TYPE_DOUBLE, FieldDescriptor.TYPE_FLOAT)
+LARGEST = 1e12
+"""No length, angle, speed or value is beyond; its square is still finite in single precision."""
+LATEST_NS = 2**62
+"""A session of 146 years; what is added to a capture time still fits into 64 bits."""
 
 
 class Refused(Exception):  # noqa: N818  (a verdict about a message, not a failure of this program)
@@ -44,13 +47,13 @@ def unpack_stamp(attachment: bytes) -> Stamp:
     """Inverse of `pack_stamp`.
 
     Raises:
-        Refused: wrong length, run 0, or a capture time before the session.
+        Refused: wrong length, run 0, or a capture time before the session or after every session.
     """
     if len(attachment) != _ATTACHMENT.size:
         raise Refused(f"attachment must have {_ATTACHMENT.size} bytes; got {len(attachment)}")
     stamp = Stamp(*_ATTACHMENT.unpack(attachment))
-    if stamp.run == 0 or stamp.capture_ns < 0:
-        raise Refused(f"attachment must name a run and a capture time >= 0; got {stamp}")
+    if stamp.run == 0 or not 0 <= stamp.capture_ns < LATEST_NS:
+        raise Refused(f"attachment must name a run and a capture time of a session; got {stamp}")
     return stamp
 
 
@@ -75,36 +78,38 @@ class Decoder:
     def __init__(self, schema: type[Any]) -> None:
         """For a generated protobuf class."""
         self._schema = schema
-        self._finite = _finite_check(schema.DESCRIPTOR)
+        self._possible = _range_check(schema.DESCRIPTOR)
 
     def __call__(self, payload: bytes) -> Any:
         """The message in a payload.
 
         Raises:
-            Refused: not a message of this schema, or a number in it is not finite.
+            Refused: not a message of this schema, or a number in it is not finite or absurd.
         """
         try:
             message = self._schema.FromString(payload)
         except DecodeError:
             raise Refused(f"payload of {len(payload)} bytes is no {self._schema.DESCRIPTOR.full_name}") from None
-        if not self._finite(message):
-            raise Refused(f"{self._schema.DESCRIPTOR.full_name} holds a number that is not finite")
+        if not self._possible(message):
+            raise Refused(
+                f"{self._schema.DESCRIPTOR.full_name} holds a number that is not finite, or beyond {LARGEST:g}"
+            )
         return message
 
 
-def _finite_check(descriptor: Descriptor) -> Callable[[Any], bool]:
-    """Whether all real numbers of a message are finite."""
+def _range_check(descriptor: Descriptor) -> Callable[[Any], bool]:
+    """Whether all real numbers of a message are finite and possible; a comparison with NaN is false."""
     single = [field.name for field in descriptor.fields if field.type in _REALS and not field.is_repeated]
     listed = [field.name for field in descriptor.fields if field.type in _REALS and field.is_repeated]
-    nested = [(field, _finite_check(field.message_type)) for field in descriptor.fields if field.message_type]
+    nested = [(field, _range_check(field.message_type)) for field in descriptor.fields if field.message_type]
     # attrgetter returns a bare value for one name and a tuple for more: ask for the first one twice.
     scalars: Callable[[Any], tuple[float, ...]] = attrgetter(single[0], *single) if single else lambda _: ()
 
     def check(message: Any) -> bool:
-        if not all(map(math.isfinite, scalars(message))):
+        if not all(-LARGEST < value < LARGEST for value in scalars(message)):
             return False
         lists: Iterable[float] = chain.from_iterable(getattr(message, name) for name in listed)
-        return all(map(math.isfinite, lists)) and all(
+        return all(-LARGEST < value < LARGEST for value in lists) and all(
             inner(part) for field, inner in nested for part in _parts(message, field)
         )
 

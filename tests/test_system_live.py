@@ -24,6 +24,7 @@ SUMMARY = (
     "wall_s",
     "messages",
     "lost",
+    "refused",
     "trials",
     "docked",
     "picked",

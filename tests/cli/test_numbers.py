@@ -16,6 +16,7 @@ SUMMARY = [
     "wall_s",
     "messages",
     "lost",
+    "refused",
     "trials",
     "docked",
     "picked",

@@ -25,7 +25,7 @@ class Heard(NamedTuple):
 
 
 def small_system(
-    directory: Path, overrides=(), *, echo: str = "", clock: str = "lockstep", stall_s: float = 20.0
+    directory: Path, overrides=(), *, echo: str = "", world: str = "", clock: str = "lockstep", stall_s: float = 20.0
 ) -> System:
     """World, echo and witness in a realm of their own."""
     file = directory / "small.toml"
@@ -39,6 +39,7 @@ end = "world/end"
 [component.world]
 run = "tests.runtime.parts.world"
 inputs = {{ drive = "echo/drive", ack = "witness/ack" }}
+{world}
 [component.echo]
 run = "tests.runtime.parts.echo"
 inputs = {{ image = "world/image" }}

@@ -1,10 +1,12 @@
 """Components as real processes on the bus."""
 
+import os
 import signal
 import subprocess
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -20,7 +22,7 @@ from runtime.wire import encoding_of, pack_stamp
 from schemas.drive_pb2 import BaseCommand
 from schemas.image_pb2 import CompressedImage
 from schemas.session_pb2 import Hold, Journal
-from tests.runtime.system import heard, run_to_end, run_until, small_system, wait_for
+from tests.runtime.system import Heard, heard, run_to_end, run_until, small_system, wait_for
 
 FRAME_NS = 125_000_000
 
@@ -196,6 +198,65 @@ def test_what_is_malformed_is_counted_and_changes_nothing(tmp_path):
     images = sum(row.key == "world/image" for row in rows)
     answers = [row for row in rows if row.key == "echo/drive" and BaseCommand.FromString(row.payload).v_mps >= 0]
     assert abs(len(answers) - images) <= 1
+
+
+def test_what_is_said_again_is_refused_counted_and_told_and_changes_nothing(tmp_path):
+    """Every image of a run, again while it goes on, and all of them once more when the world has been started again."""
+    system = small_system(tmp_path, ["world.frames=0"], clock="real", world='restart = "on-failure"')
+    taken: list[zenoh.Sample] = []
+    with Supervisor(system) as supervisor:
+        run_until(supervisor, lambda: not supervisor.missing)
+        with open_peer(supervisor.run.endpoint) as stranger:
+            subscriber = stranger.declare_subscriber(f"{system.realm}/world/image", taken.append)
+            run_until(supervisor, lambda: len(taken) >= 8)
+            say_again(stranger, taken[:8])
+            run_until(supervisor, lambda: supervisor.statuses["echo"].malformed >= 8)
+            assert "came after" in supervisor.refusal
+            subscriber.undeclare()
+            old = list(taken)
+            _kill(supervisor.pids["world"])
+            run_until(supervisor, lambda: bool(supervisor.deaths))
+            before = supervisor.statuses["echo"].handled
+            run_until(supervisor, lambda: supervisor.statuses["echo"].handled > before + 8)
+            known = supervisor.statuses["echo"].malformed
+            say_again(stranger, old)
+            run_until(supervisor, lambda: supervisor.statuses["echo"].malformed >= known + len(old))
+        supervisor.stop()
+    assert supervisor.refused >= 2 * (8 + len(old)), "echo and the witness"
+    answers = [row.capture_ns for row in heard(system) if row.key == "echo/drive" and is_answer(row)]
+    assert len(answers) == len(set(answers)), "no frame is answered twice"
+
+
+def say_again(session: zenoh.Session, samples: list[zenoh.Sample]) -> None:
+    for sample in samples:
+        session.put(sample.key_expr, sample.payload, attachment=sample.attachment, encoding=sample.encoding)
+
+
+def is_answer(row: Heard) -> bool:
+    return BaseCommand.FromString(row.payload).v_mps >= 0
+
+
+def test_by_default_nothing_listens_off_loopback(tmp_path):
+    system = small_system(tmp_path, ["world.frames=0"], clock="real")
+    with Supervisor(system) as supervisor:
+        run_until(supervisor, lambda: not supervisor.missing)
+        found = {pid: listening(pid) for pid in (os.getpid(), *supervisor.pids.values())}
+    assert all(found.values()), "each process has a place of its own"
+    assert {address for addresses in found.values() for address in addresses} == {"tcp 0100007F"}
+
+
+def listening(pid: int) -> set[str]:
+    """Protocol and hexadecimal address of each socket of a process that hears whoever comes (Linux)."""
+    inodes, found = set(), set()
+    for file in Path(f"/proc/{pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # closed meanwhile
+            inodes.add(str(file.readlink()))
+    for protocol in ("tcp", "tcp6", "udp", "udp6"):
+        for line in Path(f"/proc/{pid}/net/{protocol}").read_text(encoding="ascii").splitlines()[1:]:
+            _, local, _, state, *_, inode = line.split()[:10]
+            if f"socket:[{inode}]" in inodes and (state == "0A" or protocol.startswith("udp")):
+                found.add(f"{protocol} {local.partition(':')[0]}")
+    return found
 
 
 def test_two_realms_do_not_mix(tmp_path):

@@ -13,7 +13,7 @@ from schemas.image_pb2 import CompressedImage
 from schemas.policy_pb2 import Policy
 
 
-@given(st.integers(1, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(0, 2**63 - 1))
+@given(st.integers(1, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(0, 2**62 - 1))
 def test_a_stamp_survives_its_bytes(run, sequence, capture_ns):
     assert unpack_stamp(pack_stamp(run, sequence, capture_ns)) == (run, sequence, capture_ns)
 
@@ -48,6 +48,20 @@ def test_a_number_that_is_not_finite_is_refused_wherever_it_stands(message, bad)
     payload = message(bad).SerializeToString()
     with pytest.raises(Refused, match="not finite"):
         Decoder(message(bad).__class__)(payload)
+
+
+@pytest.mark.parametrize("absurd", [2e12, -3e38])
+def test_a_number_beyond_every_length_and_speed_is_refused(absurd):
+    for message in (Drive(v_mps=absurd), Policy(value=[0.0, absurd])):
+        with pytest.raises(Refused, match="beyond 1e\\+12"):
+            Decoder(message.__class__)(message.SerializeToString())
+
+
+def test_a_capture_time_after_every_session_is_refused():
+    assert unpack_stamp(pack_stamp(1, 0, 2**62 - 1)).capture_ns == 2**62 - 1
+    for capture_ns in (2**62, 2**63 - 1, -1):
+        with pytest.raises(Refused, match="a capture time of a session"):
+            unpack_stamp(pack_stamp(1, 0, capture_ns))
 
 
 @given(st.binary(max_size=200), st.sampled_from([Drive, CompressedImage, Policy]))
