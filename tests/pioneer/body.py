@@ -56,6 +56,14 @@ class Body(World):
         super().step()
 
     @property
+    def gripper_byte(self):
+        """The standard packet's: open, closed, moves, -, up, down, lift moves, -."""
+        gripper = self.gripper
+        bits = (gripper.fingers >= 1.0, gripper.fingers <= 0.0 or gripper.gripping, gripper.fingers_move, False,
+                gripper.up, gripper.down, gripper.lift_moves, False)  # fmt: skip
+        return sum(bool(on) << bit for bit, on in enumerate(bits))
+
+    @property
     def switches(self):
         """GRIPPERpac's state: low where a switch holds or a beam is broken, high where a motor moves."""
         gripper = self.gripper

@@ -70,7 +70,10 @@ class Canon(Mounted):
             return (_answer(error=0x31),)
         if not self.host or not (self.power or command == b"\xa0"):
             return (_answer(error=0x39),)
-        return (self._do(command, rest, time_ns),)
+        try:
+            return (self._do(command, rest, time_ns),)
+        except ValueError:  # digits that are none, or too few
+            return (_answer(error=0x35),)
 
     def _do(self, command, rest, time_ns):
         match command:
@@ -80,6 +83,8 @@ class Canon(Mounted):
                 self.tilts = tuple(int(rest[at : at + 4], 16) - 0x8000 for at in (1, 5))
             case b"\x62":
                 return self._turn(*(int(rest[at : at + 4], 16) - 0x8000 for at in (0, 4)), time_ns)
+            case b"\x53":
+                self.look(*self.angles_deg, time_ns)
             case b"\x63":
                 steps = (round(angle / 0.1125) + 0x8000 for angle in self.angles_deg)
                 return _answer(b"%04X%04X" % tuple(steps))

@@ -42,6 +42,10 @@ class Robot:
     stop_button: bool = False
     strict: bool = False
     """As above: a packet other than the next SYNC spoils the handshake for good."""
+    knows_gripper_pac: bool = True
+    """Older firmware tells of its gripper in the standard packet alone."""
+    gripper_kind: int = 2
+    """In GRIPPERpac; 0 = there is none."""
     deaf: bool = False
     """Hears nothing and says nothing: the cable is pulled, or it hangs."""
 
@@ -56,7 +60,8 @@ class Robot:
         self._stop(None)
         self.heard_ns = self.cycle_ns = None
         self.zero = self.body.odometry.triple
-        self.gripper_stream = self.sonar = False
+        self.gripper_stream = self.sonar = self.encoder_stream = False
+        self.top_mmps, self.top_degps = 750, 100
         self.aux = {}
         self.asked = {}
         self.buffer = b""
@@ -93,7 +98,9 @@ class Robot:
             self.cycle_ns = time_ns
             self._say(self._sip(time_ns))
             if self.gripper_stream:
-                self._say(bytes((0xE0, 2, self.body.switches, 0)))
+                self._say_gripper()
+            if self.encoder_stream:
+                self._say_encoders()
         said, self.out = self.out, b""
         return b"" if self.deaf else said
 
@@ -112,13 +119,13 @@ class Robot:
     def _speed_mps(self):
         """That of VEL, or towards the way that MOVE has named."""
         if self.way_m is None:
-            return self.speed_mmps * 1e-3
+            return min(max(self.speed_mmps, -self.top_mmps), self.top_mmps) * 1e-3
         return min(max(self.way_m - self._way_m(), -0.3), 0.3)
 
     def _turn_radps(self):
         """That of RVEL, or towards the heading that HEAD or DHEAD has named."""
         if self.heading_rad is None:
-            return math.radians(self.turn_degps)
+            return math.radians(min(max(self.turn_degps, -self.top_degps), self.top_degps))
         missing = math.remainder(self.heading_rad - self._odometry()[2], 2 * math.pi)
         return min(max(2 * missing, -0.5), 0.5)
 
@@ -158,6 +165,12 @@ class Robot:
     def _turn(self, value):
         self.turn_degps, self.wheels, self.heading_rad = value, None, None
 
+    def _limit_speed(self, value):
+        self.top_mmps = min(abs(value), 750) or 750
+
+    def _limit_turn(self, value):
+        self.top_degps = min(abs(value), 100) or 100
+
     def _move(self, value):
         self.way_m, self.wheels = self._way_m() + value * 1e-3, None
 
@@ -181,7 +194,21 @@ class Robot:
     def _tell_gripper(self, value):
         self.gripper_stream = value > 1
         if value == 1:
-            self._say(bytes((0xE0, 2, self.body.switches, 0)))
+            self._say_gripper()
+
+    def _say_gripper(self):
+        if self.knows_gripper_pac:
+            self._say(bytes((0xE0, self.gripper_kind, self.body.switches, 0)))
+
+    def _tell_encoders(self, value):
+        self.encoder_stream = value > 1
+        if value == 1:
+            self._say_encoders()
+
+    def _say_encoders(self):
+        """Ways of both wheels, in the counts of a robot that has one for a millimetre."""
+        way_mm, arc_mm = 1000 * self._way_m(), self._odometry()[2] / 0.006
+        self._say(struct.pack("<Bii", 0x90, round(way_mm - arc_mm), round(way_mm + arc_mm)))
 
     def _switch_sonar(self, value):
         self.sonar = bool(value)
@@ -218,7 +245,7 @@ class Robot:
                            124, stall, 0, flags, 0)  # fmt: skip
         if self.empty_sonar and self.sonar:
             return head + bytes((24,))
-        return head + bytes((0, 0, 0, 0, 0, 0))
+        return head + bytes((0, 0, body.gripper_byte, 0, body.switches & 0x3F, 0))
 
     def _odometry(self):
         x0, y0, heading0 = self.zero
@@ -236,13 +263,16 @@ class Robot:
 _OBEYED = {
     2: lambda robot, _: robot.reset(),
     4: Robot._enable,
+    6: Robot._limit_speed,
     7: Robot._set_origin,
     8: Robot._move,
     9: Robot._turn,
+    10: Robot._limit_turn,
     11: Robot._speed,
     12: Robot._head,
     13: Robot._turn_by,
     18: lambda robot, _: robot._say(robot._config()),
+    19: Robot._tell_encoders,
     21: Robot._turn,
     22: Robot._turn_by,
     28: Robot._switch_sonar,

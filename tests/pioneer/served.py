@@ -21,7 +21,8 @@ from tests.pioneer.robot import Robot
 
 STEP_NS = 1_000_000_000 // 64
 _BYTES = 4096
-_SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 115200: termios.B115200}
+_SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 57600: termios.B57600,
+           115200: termios.B115200}  # fmt: skip
 
 
 class Serial:

@@ -7,6 +7,7 @@ import pytest
 
 from components.base.pioneer.client import Client, Wish
 from components.base.pioneer.command import Command
+from components.base.pioneer.gripper import Switches
 from components.base.ports import Pioneer
 from components.simulator.params import Params
 from docking.starts import Start
@@ -17,6 +18,8 @@ NS = 1_000_000_000
 STEP_NS = NS // 64
 BAUD = 9600
 FAR = Start(0.0, 0.0, 50.0)
+AT_FINGERS = Start(0.0, 0.0, 0.28)
+"""The object is between the fingers."""
 
 
 class Rig:
@@ -255,8 +258,9 @@ def test_sonar_readings_that_never_come_and_motors_that_are_on_harm_nobody():
     assert rig.readings[-1].rear_range_m is None
 
 
-def test_the_gripper_goes_through_a_pick_up():
-    rig = Rig(Pioneer()).connected()
+@pytest.mark.parametrize("knows_gripper_pac", [True, False])
+def test_the_gripper_goes_through_a_pick_up(knows_gripper_pac):
+    rig = Rig(Pioneer(), knows_gripper_pac=knows_gripper_pac).connected().run(1.0)
     rig.wish = Wish(gripper=1)
     rig.run(0.3)
     assert not rig.readings[-1].switches.lift_down, "it is still at the top"
@@ -276,6 +280,25 @@ def test_the_gripper_goes_through_a_pick_up():
     rig.run(2.0)
     assert rig.body.gripper.fingers == 1.0
     assert not rig.readings[-1].switches.fingers_closed
+
+
+def test_break_beams_are_told_by_old_firmware_too():
+    rig = Rig(knows_gripper_pac=False).connected().run(1.0)
+    assert not rig.readings[-1].switches.inner_beam
+    rig.body.place(AT_FINGERS)
+    rig.wish = Wish(gripper=1)
+    rig.run(3.0)
+    switches = rig.readings[-1].switches
+    assert (switches.inner_beam, switches.outer_beam) == (True, True)
+
+
+def test_a_robot_without_a_gripper_is_told_once_and_its_switches_say_nothing():
+    rig = Rig(gripper_kind=0).connected()
+    rig.body.place(AT_FINGERS)
+    rig.wish = Wish(gripper=1)
+    rig.run(3.0)
+    assert sum("no gripper" in words for words in rig.client.words) == 1
+    assert rig.readings[-1].switches == Switches()
 
 
 def test_reversed_motors_get_the_opposite_commands():

@@ -12,6 +12,7 @@ from components.base.pioneer.aux_pac import answer_of, asked
 from components.base.pioneer.command import SYNC0, SYNC1, SYNC2, Command, Spoken, heard, integer, plain, text, wheels
 from components.base.pioneer.config_pac import config_of, names_of
 from components.base.pioneer.frame import Frames, framed
+from components.base.pioneer.gripper_flags import flags_of
 from components.base.pioneer.gripper_pac import gripper_of
 from components.base.pioneer.model import Model
 from components.base.pioneer.odometry import Odometry
@@ -23,13 +24,22 @@ PACKETS = {
     "fa fb 03 02 00 02": SYNC2,
     "fa fb 06 04 3b 01 00 05 3b": integer(Command.ENABLE, 1),
     "fa fb 06 05 3b 2c 01 31 3c": integer(Command.SETA, 300),
+    "fa fb 06 06 3b f4 01 fa 3c": integer(Command.SETV, 500),
     "fa fb 06 08 1b fa 00 02 1b": integer(Command.MOVE, -250),
+    "fa fb 06 0a 3b 3c 00 46 3b": integer(Command.SETRV, 60),
     "fa fb 06 0b 1b c8 00 d3 1b": integer(Command.VEL, -200),
+    "fa fb 06 0d 1b 2d 00 3a 1b": integer(Command.DHEAD, -45),
+    "fa fb 06 13 3b 02 00 15 3b": integer(Command.ENCODER, 2),
     "fa fb 06 15 1b 1e 00 33 1b": integer(Command.RVEL, -30),
+    "fa fb 06 1c 3b 01 00 1d 3b": integer(Command.SONAR, 1),
     "fa fb 03 1d 00 1d": plain(Command.STOP),
+    "fa fb 06 21 3b 02 00 23 3b": integer(Command.GRIPPER, 2),
     "fa fb 06 21 3b 05 00 26 3b": integer(Command.GRIPPER, 5),
+    "fa fb 06 21 3b 11 00 32 3b": integer(Command.GRIPPER, 17),
     "fa fb 06 25 3b 02 00 27 3b": integer(Command.GRIPREQUEST, 2),
     "fa fb 06 2b 3b 00 00 2b 3b": integer(Command.GETAUX, 0),
+    "fa fb 06 2c 3b 03 00 2f 3b": integer(Command.BUMPSTALL, 3),
+    "fa fb 03 37 00 37": plain(Command.E_STOP),
     "fa fb 06 20 3b 0a 0a 2a 45": wheels(10, 10),
     "fa fb 06 20 1b f6 09 16 24": wheels(-10, 10),
     "fa fb 06 20 3b 00 00 20 3b": wheels(0, 0),
@@ -124,7 +134,7 @@ def test_a_sip_is_read_at_the_offsets_of_the_manual():
 
 def test_sonar_readings_that_are_announced_and_not_sent_are_none():
     assert sip_of(SIP[:19] + bytes((24,))).sonar == {}
-    assert sip_of(SIP[:19] + bytes((24, 7, 0x10, 0x00, 8))).sonar == {7: 16}
+    assert sip_of(SIP[:19] + bytes((24, 0, 0, 0, 0, 0))).sonar == {}, "what follows is no reading"
 
 
 @given(st.integers(0, len(SIP)))
@@ -168,6 +178,23 @@ def test_the_gripper_s_switches_are_low_when_they_hold():
     pac = gripper_of(bytes((0xE0, 2, 0b01011010)))
     assert (pac.open, pac.lift_at_end, pac.outer_beam, pac.inner_beam) == (True, False, False, True)
     assert (pac.grasping, pac.lift_moves, pac.fingers_move) == (True, True, False)
+
+
+def standard(gripper, digital_in):
+    return sip_of(SIP[:19] + bytes((0, 0x55, gripper, 0, digital_in, 0)))
+
+
+def test_the_standard_packet_s_gripper_byte_is_read_as_the_gripper_s_manual_has_it():
+    flags = flags_of(standard(0b01100110, 0b0100))
+    assert (flags.fingers_closed, flags.fingers_move) == (True, True)
+    assert (flags.lift_up, flags.lift_down, flags.lift_moves) == (False, True, True)
+    assert (flags.outer_beam, flags.inner_beam) == (True, False)
+
+
+def test_of_two_opposites_that_both_hold_nothing_is_known():
+    flags = flags_of(standard(0b00110011, 0))
+    assert (flags.fingers_closed, flags.lift_up, flags.lift_down) == (False, False, False)
+    assert flags_of(sip_of(SIP[:20])) is None
 
 
 def test_the_auxiliary_port_is_asked_before_it_is_told_and_answers_in_its_own_packet():

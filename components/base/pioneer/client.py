@@ -14,7 +14,8 @@ from components.base.pioneer.command import Command, integer, plain
 from components.base.pioneer.config_pac import ConfigPac, config_of
 from components.base.pioneer.frame import Frames
 from components.base.pioneer.gripper import Gripper, Switches
-from components.base.pioneer.gripper_pac import gripper_of
+from components.base.pioneer.gripper_flags import flags_of
+from components.base.pioneer.gripper_pac import NO_GRIPPER, GripperPac, gripper_of
 from components.base.pioneer.handshake import REST, Handshake
 from components.base.pioneer.model import DEFAULT, MODELS, Model
 from components.base.pioneer.odometry import Odometry
@@ -30,6 +31,8 @@ _SETTLE_NS = 100_000_000
 """A line without a byte for so long is at rest, and no packet is on its way."""
 _CONFIG_NS = _NS
 """The configuration is asked for again after this."""
+_GRIPPER_NS = _NS
+"""A robot that has sent no GRIPPERpac by then knows none."""
 _SLOW_WATCHDOG_MS = 500
 _NO_WATCHDOG_MS = 60_000
 _MOST = 32
@@ -79,6 +82,9 @@ class Client:
         self._sonar: dict[int, int] = {}
         self._heard_ns = self._byte_ns = self._told_ns = self._config_ns = time_ns
         self._commanded_ns: int | None = None
+        self._opened_ns = time_ns
+        self._gripper_kind: int | None = None
+        """As the newest GRIPPERpac tells; None = none has come."""
         self._fault = ""
         self.model: Model = MODELS[DEFAULT]
         self.config: ConfigPac | None = None
@@ -197,7 +203,7 @@ class Client:
             self._heard_ns = time_ns
             self._read(sip, time_ns)
         elif gripper is not None and self._params.gripper:
-            self._gripper.see(gripper, time_ns)
+            self._see_gripper(gripper, time_ns)
         elif answer is not None:
             self.answers.append(answer)
         elif self.config is None and (config := config_of(payload)) is not None:
@@ -211,7 +217,8 @@ class Client:
             self._say(f"model {wanted!r} is unknown, {DEFAULT} is assumed; known are {', '.join(MODELS)}")
         self._handshake, self.config, self._sonar = None, None, {}
         self._odometry.forget(self.model)
-        self._heard_ns = self._config_ns = time_ns
+        self._heard_ns = self._config_ns = self._opened_ns = time_ns
+        self._gripper_kind = None
         self._rounding = Rounding()
         self._outbox.add(self._setup())
         self._outbox.drives = True
@@ -243,11 +250,24 @@ class Client:
                 f"the robot's own watchdog is {watchdog}; 500 ms or less is safer (set it in FLASH). "
                 f"Until then no faster than {self.limits.speed_mps:.3f} m/s, slower near the table"
             )
-        if self._params.gripper and not config.has_gripper:
+
+    def _see_gripper(self, pac: GripperPac, time_ns: int) -> None:
+        if pac.kind == NO_GRIPPER and self._gripper_kind != NO_GRIPPER:
             self._say("the robot says that it has no gripper")
+        self._gripper_kind = pac.kind
+        if pac.kind != NO_GRIPPER:
+            self._gripper.see(pac, time_ns)
+
+    def _see_flags(self, sip: Sip, time_ns: int) -> None:
+        """Firmware without GRIPPERpac: what the standard packet says must do."""
+        flags = flags_of(sip)
+        if self._gripper_kind is None and flags is not None and time_ns - self._opened_ns >= _GRIPPER_NS:
+            self._gripper.see_flags(flags, time_ns)
 
     def _read(self, sip: Sip, time_ns: int) -> None:
         self._odometry.add(sip, time_ns)
+        if self._params.gripper:
+            self._see_flags(sip, time_ns)
         self._sonar.update(sip.sonar)
         model = self.model
         fault = self._fault_of(sip, time_ns)

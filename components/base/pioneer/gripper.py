@@ -10,6 +10,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from components.base.pioneer.command import Command, integer
+from components.base.pioneer.gripper_flags import GripperFlags
 from components.base.pioneer.gripper_pac import GripperPac
 
 _NS = 1_000_000_000
@@ -97,10 +98,20 @@ class Gripper:
 
     def see(self, pac: GripperPac, time_ns: int) -> None:
         """Take a packet."""
-        inner, outer = pac.inner_beam == self._obstructed_high, pac.outer_beam == self._obstructed_high
+        inner, outer = self._obstructed(pac.inner_beam), self._obstructed(pac.outer_beam)
         at_end = pac.lift_at_end
         lift_moves = pac.lift_moves or not at_end
         up = self._lift.arrived(Code.LIFT_UP, lift_moves, time_ns)
         down = self._lift.arrived(Code.LIFT_DOWN, lift_moves, time_ns)
         closed = self._fingers.arrived(Code.CLOSE, pac.fingers_move, time_ns)
         self.switches = Switches(inner, outer, up, down, closed)
+
+    def see_flags(self, flags: GripperFlags, time_ns: int) -> None:
+        """Take what a standard packet says: it tells by itself at which end the lift is."""
+        up, down = (at_end and not flags.lift_moves for at_end in (flags.lift_up, flags.lift_down))
+        closed = self._fingers.arrived(Code.CLOSE, flags.fingers_move, time_ns) or flags.fingers_closed
+        inner, outer = self._obstructed(flags.inner_beam), self._obstructed(flags.outer_beam)
+        self.switches = Switches(inner, outer, up, down, closed and not flags.fingers_move)
+
+    def _obstructed(self, level: bool) -> bool:
+        return level == self._obstructed_high

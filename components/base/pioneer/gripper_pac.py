@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 TYPE = 0xE0
+NO_GRIPPER = 0
+"""Kind."""
 _OPEN, _LIFT, _OUTER, _INNER, _LEFT, _RIGHT, _LIFT_MOVES, _FINGERS_MOVE = (1 << bit for bit in range(8))
 
 

@@ -26,6 +26,7 @@ DEFAULT = "peoplebot-sh"
 MODELS: Mapping[str, Model] = {
     "peoplebot-sh": Model(),
     "p3dx-sh": Model(turn=0.0056),
+    "p3dx": Model(distance_mm=0.485, turn=0.0056),
     "perfpb": Model(distance_mm=0.485),
     "perfpb+": Model(distance_mm=0.485),
     "p2pp": Model(distance_mm=0.485, range_mm=0.268),

@@ -35,7 +35,7 @@ class Sip(NamedTuple):
     stall_bumpers: int
     flags: int
     sonar: Mapping[int, int]
-    """Number of a sonar -> range, of those that this packet brings."""
+    """Number of a sonar -> range, of those that this packet brings; nothing of a packet that announces more."""
     gripper: int | None = None
     """Byte of the gripper (not GRIPPERpac's layout); which of two it is, sources disagree: the second here."""
     digital_in: int | None = None
@@ -81,9 +81,9 @@ def sip_of(payload: bytes) -> Sip | None:
         return None
     kind, x, y, heading, left, right, battery, stall, _control, flags, _compass, count = _HEAD.unpack_from(payload)
     rest = payload[_HEAD.size :]
-    carried = min(count, len(rest) // _SONAR.size)
-    sonar = dict(_SONAR.iter_unpack(rest[: carried * _SONAR.size]))
-    tail = rest[count * _SONAR.size :]
+    readings, tail = rest[: count * _SONAR.size], rest[count * _SONAR.size :]
+    is_whole = len(readings) == count * _SONAR.size
+    sonar = dict(_SONAR.iter_unpack(readings)) if is_whole else {}
     motion = (kind == MOVING, x, y, heading, left, right, battery, stall, flags, sonar)
     if len(tail) < _TAIL.size:
         return Sip(*motion)
