@@ -79,6 +79,8 @@ class Neighbours:
         self._drivers = {spec.host for spec in system.components if _answers_frames(spec.run)}
         self._runs: dict[str, int] = {}
         """Host -> the run seen last."""
+        self._seconds: dict[str, int] = {}
+        """Host -> a run that appeared while the one before is there: its successor, or another machine's mistake."""
         self.away: dict[str, str] = {}
         """Host that was there -> what was said when it went."""
 
@@ -92,22 +94,33 @@ class Neighbours:
         if half == self.own:
             return Verdict()
         if half.host == self.own.host:
-            words = f"host {half.host} must run once; another machine runs it already"
-            return Verdict("" if begun else words, fatal=not begun)
+            return Verdict(f"host {half.host} must run once; another machine runs it, too", fatal=not begun)
         if half.host not in self._expected or half.digest != self.own.digest:
             return self._stranger(half, begun=begun)
-        before, self._runs[half.host] = self._runs.get(half.host), half.run
+        before = self._runs.setdefault(half.host, half.run)
+        if before != half.run and half.host not in self.away:
+            self._seconds[half.host] = half.run
+            return Verdict(f"a second machine runs {half.host}; {self.own.host} stays with the first")
         was_away = self.away.pop(half.host, None) is not None
-        if before in {None, half.run}:
+        if before == half.run:
             return Verdict(f"{half.host} is {'back' if was_away else 'there'}")
+        return self._succeed(half)
+
+    def _succeed(self, half: Half) -> Verdict:
+        self._runs[half.host] = half.run
         if self._depends_on(half.host):
             return Verdict(f"{half.host} has begun another session; start this host again", fatal=True)
         return Verdict(f"{half.host} was started again and is there")
 
     def vanish(self, half: Half) -> Verdict:
         """A half is not there any more: it has ended, or the link is down."""
+        second = self._seconds.get(half.host)
+        if second == half.run:
+            del self._seconds[half.host]
         if self._runs.get(half.host) != half.run or half.host in self.away:
             return Verdict()
+        if second is not None:
+            return self._succeed(half._replace(run=self._seconds.pop(half.host)))
         self.away[half.host] = f"{half.host} is away; {self.own.host} goes on without it"
         return Verdict(self.away[half.host])
 

@@ -79,7 +79,25 @@ def test_the_laptop_ends_with_the_robot_and_does_not_learn_from_another_session(
     laptop.appear(Half("robot", DIGEST, 2), begun=False)
     assert laptop.end(Half("robot", DIGEST, 2)) == ("robot has ended", True)
     assert not laptop.end(Half("robot", DIGEST, 9)).fatal
+    laptop.vanish(Half("robot", DIGEST, 2))
     assert laptop.appear(Half("robot", DIGEST, 3), begun=True).fatal
+
+
+def test_a_robot_that_is_started_again_before_its_end_was_noticed_has_begun_another_session():
+    laptop = Neighbours(LAPTOP, 1)
+    laptop.appear(Half("robot", DIGEST, 2), begun=False)
+    assert not laptop.appear(Half("robot", DIGEST, 3), begun=True).fatal
+    assert laptop.vanish(Half("robot", DIGEST, 2)) == ("robot has begun another session; start this host again", True)
+
+
+def test_a_second_robot_by_mistake_ends_nobody_s_session():
+    laptop = Neighbours(LAPTOP, 1)
+    laptop.appear(Half("robot", DIGEST, 2), begun=False)
+    said = laptop.appear(Half("robot", DIGEST, 3), begun=True)
+    assert said == ("a second machine runs robot; laptop stays with the first", False)
+    assert laptop.vanish(Half("robot", DIGEST, 9)) == ("", False), "of an earlier session, late"
+    assert laptop.vanish(Half("robot", DIGEST, 3)) == ("", False)
+    assert laptop.vanish(Half("robot", DIGEST, 2)).words == "robot is away; laptop goes on without it"
 
 
 def test_only_who_has_not_begun_gives_way_to_a_host_that_runs_another_system():
