@@ -82,6 +82,7 @@ def _take_all(watch: Watch, waiting: deque[tuple[Any, int]]) -> None:
         message, capture_ns = waiting.popleft()
         if message.DESCRIPTOR.name == "RecorderAck":
             watch.messages, watch.lost = message.messages, message.lost
+            watch.board.robot_s = max(watch.board.robot_s, capture_ns * 1e-9)  # eyes alone have no other clock
         elif message.DESCRIPTOR.name == "Applied":
             watch.drives = (
                 f"{message.commander}, {message.v_mps:+.2f} m/s, {math.degrees(message.omega_radps):+.0f} deg/s"
