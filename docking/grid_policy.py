@@ -20,6 +20,8 @@ TRIED = -2
 """Less its index: an action that is only tried, to learn."""
 LARGEST_NODES = 4_000_000
 """More is refused."""
+LONGEST_HOLD = 32
+"""Sampling periods for which an action may have to be held."""
 _KIND = "grid policy"
 
 
@@ -40,6 +42,10 @@ class Axes:
     def shape(self) -> tuple[int, int, int]:
         """Of the tables: d, alpha, beta."""
         return self.d_nodes, self.alpha_nodes, self.beta_nodes
+
+    def spans(self, beta_rad: float, alpha_rad: float) -> bool:
+        """Whether the angles are within the ranges."""
+        return abs(beta_rad) <= self.beta_range_rad and abs(alpha_rad) <= self.alpha_range_rad
 
     def nearest(self, states: Floats) -> NDArray[np.int64]:
         """Index into the flat table of the node next to (beta, alpha, ln d) `[N, 3]`; -1 outside the ranges: `[N]`."""
@@ -76,6 +82,8 @@ class GridPolicy:
     model: RateModel
     docking: bool = True
     """It leads to the pick-up; else to the goal cell, at any distance."""
+    back_samples: int = 0
+    """An action that drives backwards is held for so many sampling periods; 0 = as any other."""
     version: int = 0
     method: str = ""
     samples: int = 0
@@ -96,6 +104,7 @@ class GridPolicy:
         _require(bool(np.isfinite(self.actions).all()), f"actions must be finite; got {self.actions}")
         known = (self.action > TRIED - len(self.actions)) & (self.action < len(self.actions))
         _require(bool(known.all()), f"action must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
+        _require(0 <= self.back_samples <= LONGEST_HOLD, f"back_samples must be in 0..{LONGEST_HOLD}")
         _require(self.version >= 0 and self.samples >= 0, "version and samples must be >= 0")
 
     def act(self, states: Floats, *, exploring: bool = False) -> NDArray[np.int64]:
@@ -120,6 +129,7 @@ class GridPolicy:
             "delay_samples": model.delay_samples,
             "noise": list(model.noise),
             "docking": self.docking,
+            "back_samples": self.back_samples,
             "version": self.version,
             "method": self.method,
             "samples": self.samples,
@@ -147,6 +157,7 @@ class GridPolicy:
                     _three(header["noise"]),
                 ),
                 docking=bool(header["docking"]),
+                back_samples=int(header.get("back_samples", 0)),
                 version=int(header["version"]),
                 method=str(header["method"]),
                 samples=int(header["samples"]),

@@ -40,9 +40,13 @@ def teacher_action(law: Linear, grid: Grid, cell: int, actions: Sequence[tuple[f
     Asked at the state instead, the action would depend on where in the cell the robot is, and the learner's counts of
     (cell, action) would be confounded. A tie goes to the side on which the object is.
     """
-    beta, alpha = grid.centre(cell)
-    wanted = law.omega_radps(beta, alpha)
-    side = 1.0 if (alpha, beta) >= (0.0, 0.0) else -1.0
+    return lawful_action(law, *grid.centre(cell), actions)
+
+
+def lawful_action(law: Linear, beta_rad: float, alpha_rad: float, actions: Sequence[tuple[float, float]]) -> int:
+    """As above, at a state: of equal turn rates the fastest."""
+    wanted = law.omega_radps(beta_rad, alpha_rad)
+    side = 1.0 if (alpha_rad, beta_rad) >= (0.0, 0.0) else -1.0
     return min(range(len(actions)), key=lambda i: (abs(actions[i][1] - wanted), -side * actions[i][1], -actions[i][0]))
 
 

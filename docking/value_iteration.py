@@ -105,7 +105,7 @@ def sweep(
     axes: Axes,
     limits: Limits,
     timed: bool,
-    dt: float,
+    durations: Floats,
     passes: int,
     settled: float,
     first: int = 0,
@@ -113,7 +113,8 @@ def sweep(
 ) -> float:
     """Back up all nodes in place, each distance until it is `settled` or `passes` are done; the largest change.
 
-    Only the distances from index `first` to before `last`, so that a sweep can be cut into slices.
+    Each action is held for its duration, `[actions]` s. Only the distances from index `first` to before `last`, so that
+    a sweep can be cut into slices.
     """
     beta, alpha, d = axes
     best, scratch = np.empty(len(beta)), np.empty((3, len(beta)))
@@ -125,7 +126,7 @@ def sweep(
                 j = count if turn % 2 == 0 else len(alpha) - 1 - count
                 best[:] = np.inf
                 for action in range(moves.shape[2]):
-                    lower(best, scratch, value, axes, moves[i, j, action], limits, timed, dt)
+                    lower(best, scratch, value, axes, moves[i, j, action], limits, timed, durations[action])
                 goal_line(scratch[0], limits, beta, 0.0, alpha[j], d[i])
                 change = max(change, keep_line(value[i, j], best, scratch[0], timed))
             largest = max(largest, change)
@@ -167,8 +168,10 @@ def promises(times: Floats, axes: Axes, limits: Limits, landings: Floats, dt: fl
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def fastest(times: Floats, moves: Floats, axes: Axes, limits: Limits, dt: float) -> NDArray[np.int8]:
+def fastest(times: Floats, moves: Floats, axes: Axes, limits: Limits, durations: Floats) -> NDArray[np.int8]:
     """Index of the action that promises the least time at each node; -1 where none promises to arrive.
+
+    Each is held for its duration, `[actions]` s.
 
     Returns:
         [d nodes, alpha nodes, beta nodes].
@@ -181,7 +184,7 @@ def fastest(times: Floats, moves: Floats, axes: Axes, limits: Limits, dt: float)
             best[:] = LATE_S
             for action in range(moves.shape[2]):
                 before[:] = best
-                lower(best, scratch, times, axes, moves[i, j, action], limits, True, dt)
+                lower(best, scratch, times, axes, moves[i, j, action], limits, True, durations[action])
                 for b in range(len(beta)):
                     if best[b] < before[b]:
                         chosen[i, j, b] = action

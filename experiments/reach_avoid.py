@@ -83,10 +83,11 @@ def _values(problem: Problem, *, timed: bool) -> Floats:
     beta, alpha, d = problem.nodes
     dt = problem.sampling_s * problem.backup_samples
     moves = moves_of(problem.printed, alpha, d, np.array(problem.actions), dt)
+    durations = np.full(len(problem.actions), dt)
     value = np.full((len(d), len(alpha), len(beta)), LATE_S if timed else FAR)
     forwards = all(v > 0.0 for v, _ in problem.actions)
     passes = 60 if forwards else 2  # driving forwards a distance depends on nearer ones only: settle it before the next
     for _ in range(_SWEEPS):
-        if sweep(value, moves, problem.nodes, problem.limits, timed, dt, passes, 0.1 * _SETTLED) < _SETTLED:
+        if sweep(value, moves, problem.nodes, problem.limits, timed, durations, passes, 0.1 * _SETTLED) < _SETTLED:
             return value
     raise RuntimeError(f"values have not settled after {_SWEEPS} sweeps; larger backup_samples help: {problem}")

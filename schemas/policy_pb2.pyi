@@ -9,7 +9,7 @@ DESCRIPTOR: _descriptor.FileDescriptor
 class Policy(_message.Message):
     __slots__ = ("version", "method", "beta_cells", "alpha_cells", "beta_range_rad", "alpha_range_rad", "action", "value", "table_sha256", "transitions", "action_v_mps", "action_omega_radps", "fine")
     class Fine(_message.Message):
-        __slots__ = ("beta_range_rad", "alpha_range_rad", "d_min", "d_max", "beta_nodes", "alpha_nodes", "d_nodes", "action_zlib", "docking", "functions", "theta", "delay_samples", "noise")
+        __slots__ = ("beta_range_rad", "alpha_range_rad", "d_min", "d_max", "beta_nodes", "alpha_nodes", "d_nodes", "action_zlib", "docking", "functions", "theta", "delay_samples", "noise", "back_samples")
         BETA_RANGE_RAD_FIELD_NUMBER: _ClassVar[int]
         ALPHA_RANGE_RAD_FIELD_NUMBER: _ClassVar[int]
         D_MIN_FIELD_NUMBER: _ClassVar[int]
@@ -23,6 +23,7 @@ class Policy(_message.Message):
         THETA_FIELD_NUMBER: _ClassVar[int]
         DELAY_SAMPLES_FIELD_NUMBER: _ClassVar[int]
         NOISE_FIELD_NUMBER: _ClassVar[int]
+        BACK_SAMPLES_FIELD_NUMBER: _ClassVar[int]
         beta_range_rad: float
         alpha_range_rad: float
         d_min: float
@@ -36,7 +37,8 @@ class Policy(_message.Message):
         theta: _containers.RepeatedScalarFieldContainer[float]
         delay_samples: float
         noise: _containers.RepeatedScalarFieldContainer[float]
-        def __init__(self, beta_range_rad: _Optional[float] = ..., alpha_range_rad: _Optional[float] = ..., d_min: _Optional[float] = ..., d_max: _Optional[float] = ..., beta_nodes: _Optional[int] = ..., alpha_nodes: _Optional[int] = ..., d_nodes: _Optional[int] = ..., action_zlib: _Optional[bytes] = ..., docking: _Optional[bool] = ..., functions: _Optional[str] = ..., theta: _Optional[_Iterable[float]] = ..., delay_samples: _Optional[float] = ..., noise: _Optional[_Iterable[float]] = ...) -> None: ...
+        back_samples: int
+        def __init__(self, beta_range_rad: _Optional[float] = ..., alpha_range_rad: _Optional[float] = ..., d_min: _Optional[float] = ..., d_max: _Optional[float] = ..., beta_nodes: _Optional[int] = ..., alpha_nodes: _Optional[int] = ..., d_nodes: _Optional[int] = ..., action_zlib: _Optional[bytes] = ..., docking: _Optional[bool] = ..., functions: _Optional[str] = ..., theta: _Optional[_Iterable[float]] = ..., delay_samples: _Optional[float] = ..., noise: _Optional[_Iterable[float]] = ..., back_samples: _Optional[int] = ...) -> None: ...
     VERSION_FIELD_NUMBER: _ClassVar[int]
     METHOD_FIELD_NUMBER: _ClassVar[int]
     BETA_CELLS_FIELD_NUMBER: _ClassVar[int]

@@ -179,6 +179,7 @@ def _fine(policy: GridPolicy) -> Policy.Fine:
         d_nodes=axes.d_nodes,
         action_zlib=zlib.compress(policy.action.tobytes(), 6),
         docking=policy.docking,
+        back_samples=policy.back_samples,
         functions=model.functions,
         theta=model.theta.ravel(),
         delay_samples=model.delay_samples,

@@ -45,6 +45,8 @@ class Planning:
     """Standard deviation of the rates, in rad/s and shares of the distance per second, up to which they are trusted."""
     replan_per_s: float = 0.005
     """No new plan is made for rates that differ by less, rad/s and camera heights per second."""
+    back_samples: int = 0
+    """Driving backwards is planned to be done for so many periods at a time; 0 = as any other action."""
     explore: bool = True
     """Where they are not trusted the least known action is tried if that is safe; else the linear controller drives."""
 
@@ -69,12 +71,15 @@ class Perceptual:
         self.planning, self.actions = planning, actions
         self.memory = MotionMemory(STRUCTURES[planning.method], planning.period_s, planning.memory_s, planning.surprise)
         axes = axes_of(limits, planning.angle_step_rad, planning.d_share * limits.gripper_m)
-        self.planner = Planner(limits, axes, np.array(actions), planning.period_s)
+        back_s = planning.back_samples * planning.period_s
+        self.planner = Planner(limits, axes, np.array(actions), planning.period_s, back_s)
         self.table = np.full(axes.shape, UNKNOWN, dtype=np.int8)
         self.half_seconds = np.full(axes.shape, round(2 * LATE_S), dtype=np.int8)
         self._stretch: list[Seen] = []
         self._stage = -1
         self._unsure = True
+        self._fresh = False
+        """Something was learned since the newest plan began."""
 
     def feed(self, seen: Seen | None, stage: int) -> bool:
         """One frame, None where the object was not seen; the stage names the trial, or the way back.
@@ -95,8 +100,20 @@ class Perceptual:
         states = np.array([seen.state for seen in stretch]).reshape(-1, 3)
         commands = np.array([seen.command for seen in stretch]).reshape(-1, 2)
         learned = self.memory.learn(states, commands)
+        self._fresh = self._fresh or learned
+        return self._begin()
+
+    def _begin(self) -> bool:
+        """Begin a new plan if it is worth it, once one that has begun is made: some take longer than a stretch.
+
+        Returns:
+            Whether one has begun.
+        """
         model = self.memory.model
-        if not learned or model is None or self._is_planned(model):
+        if self.planner.busy or not self._fresh or model is None:
+            return False
+        self._fresh = False
+        if self._is_planned(model):
             return False
         self.planner.begin(model)
         return True
@@ -116,6 +133,7 @@ class Perceptual:
         planning = self.planning
         self.half_seconds[...] = np.ceil(2.0 * np.minimum(self.planner.times_s, LATE_S))
         self.table, self._unsure = trusted_actions(self.planner, fit, planning.trust_per_s, explore=planning.explore)
+        self._begin()
         return True
 
     def policy(self, version: int = 0) -> GridPolicy | None:
@@ -129,6 +147,7 @@ class Perceptual:
             actions=self.actions,
             model=model,
             docking=self.planner.limits.docking,
+            back_samples=self.planning.back_samples,
             version=version,
             method=self.planning.method,
             samples=self.memory.samples,
@@ -142,6 +161,7 @@ class Perceptual:
             "stretch": [[*seen.state, *seen.command] for seen in self._stretch],
             "stage": self._stage,
             "unsure": self._unsure,
+            "fresh": self._fresh,
             "samples": self.memory.samples,
             "planner": self.planner.to_plain(),
             "planned": None if planned is None else [planned.functions, planned.delay_samples, list(planned.noise)],
@@ -170,7 +190,8 @@ class Perceptual:
             raise ValueError(f"table must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
         try:
             stretch = [_seen(row) for row in header["stretch"]]
-            stage, unsure, samples = int(header["stage"]), bool(header["unsure"]), int(header["samples"])
+            stage, samples = int(header["stage"]), int(header["samples"])
+            unsure, fresh = bool(header["unsure"]), bool(header["fresh"])
             planned = None if header["planned"] is None else _model(header["planned"], arrays)
             place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
         except (KeyError, TypeError, OverflowError) as error:
@@ -178,7 +199,7 @@ class Perceptual:
         times_s = checked(arrays, "times_s", self.planner.times_s) if place["busy"] else self.planner.times_s
         self.memory.take_over(sums, samples)
         self.table, self.half_seconds = table, half_seconds
-        self._stretch, self._stage, self._unsure = stretch, stage, unsure
+        self._stretch, self._stage, self._unsure, self._fresh = stretch, stage, unsure, fresh
         if planned is not None:
             self.planner.restore(planned, times_s, place)
 

@@ -41,7 +41,8 @@ class Planner:
         busy: the times have not settled yet.
     """
 
-    def __init__(self, limits: Limits, axes: Axes, actions: Floats, period_s: float) -> None:
+    def __init__(self, limits: Limits, axes: Axes, actions: Floats, period_s: float, back_s: float = 0.0) -> None:
+        """Plan that driving backwards is done for at least `back_s` at a time."""
         self.limits, self.axes, self.actions, self.period_s = limits, axes, actions, period_s
         self.nodes = (
             np.linspace(-axes.beta_range_rad, axes.beta_range_rad, axes.beta_nodes),
@@ -53,7 +54,8 @@ class Planner:
         self.busy = False
         self._layer = self._sweeps = 0
         self._change = 0.0
-        self._forwards = bool((actions[:, 0] > 0.0).all())
+        self._backwards = actions[:, 0] < 0.0
+        self._back_s = back_s
         self._dt_s = period_s
         self._moves = np.empty(0)
 
@@ -65,11 +67,13 @@ class Planner:
 
     def advance(self, layers: int) -> bool:
         """Back up so many layers of equal d, unless the times have settled before; True once they have."""
-        passes = 60 if self._forwards else 2  # driving forwards a distance depends on nearer ones only: settle it first
+        # Driving forwards, a distance depends on nearer ones only: settle it first.
+        passes = 2 if self._backwards.any() else 60
         while self.busy and layers > 0:
             last = min(self._layer + layers, self.axes.d_nodes)
             change = sweep(
-                self.times_s, self._moves, self.nodes, self.limits, True, self._dt_s, passes, 0.1 * SETTLED_S,
+                self.times_s, self._moves, self.nodes, self.limits, True, self._durations(self._dt_s), passes,
+                0.1 * SETTLED_S,
                 self._layer, last,
             )  # fmt: skip
             layers -= last - self._layer
@@ -86,9 +90,8 @@ class Planner:
 
     def chosen(self) -> NDArray[np.int8]:
         """Index of the fastest action at each node, [d, alpha, beta]; -1 where none arrives."""
-        found: NDArray[np.int8] = fastest(
-            self.times_s, self.moves(self.period_s), self.nodes, self.limits, self.period_s
-        )
+        moves, durations = self._held(self.period_s), self._durations(self.period_s)
+        found: NDArray[np.int8] = fastest(self.times_s, moves, self.nodes, self.limits, durations)
         return found
 
     def moves(self, dt_s: float, model: RateModel | None = None) -> Floats:
@@ -116,7 +119,17 @@ class Planner:
     def _set_model(self, model: RateModel) -> None:
         self.model = model
         self._dt_s = self.period_s * self._backup_samples(model)
-        self._moves = self.moves(self._dt_s)
+        self._moves = self._held(self._dt_s)
+
+    def _durations(self, dt_s: float) -> Floats:
+        return np.where(self._backwards, max(dt_s, self._back_s), dt_s)
+
+    def _held(self, dt_s: float) -> Floats:
+        """As `moves`, each action held for its duration."""
+        moves = self.moves(dt_s)
+        if self._backwards.any():
+            moves[:, :, self._backwards] = self.moves(max(dt_s, self._back_s))[:, :, self._backwards]
+        return moves
 
     def _backup_samples(self, model: RateModel) -> int:
         far = np.tile([0.0, 0.0, np.log(self.axes.d_max)], (len(self.actions), 1))
@@ -126,6 +139,6 @@ class Planner:
 
     def _end_sweep(self) -> None:
         self._sweeps += 1
-        most = 1 if self._forwards else _SWEEPS
+        most = _SWEEPS if self._backwards.any() else 1
         self.busy = self._change >= SETTLED_S and self._sweeps < most
         self._layer, self._change = 0, 0.0

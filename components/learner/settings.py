@@ -63,6 +63,13 @@ class Settings:
     trust_per_s: float = positive(0.03)
     """Ours only: rates (rad/s; share of the distance per second) known within this are trusted; else the linear
     controller drives, or the least known action where that is safe."""
+    room_beta_rad: float = between(80 * DEG, 0.01, 1.55)
+    """Ours only: plans may leave the task's range of beta, up to this. The edge is read as well there."""
+    room_alpha_rad: float = between(95 * DEG, 0.01, 3.14)
+    """As above, for the bearing: 5 deg before the head's end."""
+    back_samples: int = between(12, 0, 32)
+    """Ours only: driving backwards is planned, and done, for so many frames at a time. If it could change its mind at
+    once, motors that follow at once would be sent to and fro between two nodes: docked from 59 instead of 99 %."""
     explore: bool = True
     """Ours only: try the least known action."""
 

@@ -9,6 +9,7 @@ from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
 from docking.cells import SINK, Grid
+from docking.grid_policy import GridPolicy
 from docking.linear import teacher_action
 from docking.policy import PolicyTable
 
@@ -38,8 +39,9 @@ def steer(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Si
         omega = rules.teacher.omega_radps(sight.beta_rad, sight.alpha_rad)
         progress = replace(progress, held=Held(controller="lc"))
         return progress, Wish(rules.task.speed_mps, omega, "lc")
-    if controller == "greedy" and table is not None and table.fine is not None:
-        return steer_fine(rules, table.fine, progress, sight)
+    fine = fine_of(rules, table, progress)
+    if fine is not None:
+        return steer_fine(rules, fine, progress, sight)
     grid, cell = _cell(rules, table if controller == "greedy" else None, sight)
     if cell != progress.held.cell or rules.params.hold == "sample":
         progress = _choose(rules, table, progress, controller, grid, cell)
@@ -48,12 +50,31 @@ def steer(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Si
 
 
 def is_at_goal(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Sight) -> bool:
-    """Whether the approach is over: in the goal cell, or at the pick-up if the policy leads there itself."""
-    table = table_of(rules, table, progress)
-    greedy = controller_of(rules, progress) == "greedy" and progress.phase == Phase.EVALUATE
-    if greedy and table is not None and table.fine is not None and leads(table.fine, sight):
-        return is_there(rules, sight)
+    """Whether the approach is over: in the goal cell, or before the pick-up if the policy leads there itself."""
+    fine = landing_policy(rules, table, progress)
+    if fine is not None and (leads(fine, sight) or is_there(rules, fine, progress, sight)):
+        return is_there(rules, fine, progress, sight)
     return rules.grid.cell(sight.beta_rad, sight.alpha_rad) == rules.grid.goal
+
+
+def fine_of(rules: Rules, table: PolicyTable | None, progress: Progress) -> GridPolicy | None:
+    """The policy that knows the distance, where it drives this trial; `table` is the trial's (`table_of`)."""
+    greedy = controller_of(rules, progress) == "greedy"
+    return table.fine if greedy and table is not None else None
+
+
+def landing_policy(rules: Rules, table: PolicyTable | None, progress: Progress) -> GridPolicy | None:
+    """As above, where it leads to the pick-up itself; in training a trial ends at the goal cell."""
+    fine = fine_of(rules, table_of(rules, table, progress), progress)
+    return fine if fine is not None and fine.docking and progress.phase == Phase.EVALUATE else None
+
+
+def is_off_limits(rules: Rules, table: PolicyTable | None, progress: Progress, sight: Sight) -> bool:
+    """Whether nothing is known of such angles: outside the cells, or of what the policy was planned for."""
+    fine = fine_of(rules, table_of(rules, table, progress), progress)
+    if fine is not None:
+        return not fine.axes.spans(sight.beta_rad, sight.alpha_rad)
+    return rules.grid.cell(sight.beta_rad, sight.alpha_rad) == SINK
 
 
 def _cell(rules: Rules, table: PolicyTable | None, sight: Sight) -> tuple[Grid, int]:

@@ -11,27 +11,30 @@ from numpy.typing import NDArray
 from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
-from docking.grid_policy import UNKNOWN, GridPolicy
-from docking.linear import teacher_action
+from docking.grid_policy import LONGEST_HOLD, UNKNOWN, GridPolicy
+from docking.linear import lawful_action
 from docking.percept_filter import predicted
 
-LONGEST_DELAY = 8
-"""Frames whose commands are remembered."""
-_NEAR_RAD, _STRAIGHT_RAD = math.radians(5.0), math.radians(6.0)
-"""So much before the tilt at the pick-up, and so straight before it, the servo takes over."""
+_NEAR_RAD = math.radians(5.0)
+"""So much before the tilt at the pick-up, 5 cm, the landing may take over ..."""
+_BEFORE_RAD, _FACING_RAD = math.radians(3.5), math.radians(20.0)
+"""... within so much of beta and of the bearing; it can hardly move beta any more ..."""
+_ASIDE_RAD, _ASKEW_RAD = math.radians(15.0), math.radians(30.0)
+"""... and within so much, where the policy has no better way."""
 
 
 def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> Step:
-    """The policy's action, or where it knows none the teacher's; held for some frames, then chosen anew."""
+    """The policy's action, or where it knows none the law's; held for some frames, then chosen anew."""
     held = progress.held
-    if 0 < _held_frames(progress) < rules.params.fine_hold_samples:
+    backwards = held.v_mps < 0.0 and policy.back_samples > 0
+    if 0 < _held_frames(progress) < (policy.back_samples if backwards else rules.params.fine_hold_samples):
         wish = Wish(held.v_mps, held.omega_radps, held.controller, held.action)
         return remembered(progress, held.v_mps, held.omega_radps), wish
-    ahead = predicted(policy.model, _state(sight), _sent(policy, progress), rules.params.sampling_period_s)
+    ahead = _ahead(rules, policy, progress, sight)
     action = int(policy.act(ahead, exploring=progress.phase == Phase.TRAIN)[0])
     controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
     if action == UNKNOWN:
-        controller, action = "lc", teacher_action(rules.teacher, rules.grid, cell, policy.actions)
+        controller, action = "lc", lawful_action(rules.teacher, sight.beta_rad, sight.alpha_rad, policy.actions)
     v, omega = policy.actions[action]
     progress = replace(progress, held=Held(cell, action, v, omega, controller))
     return remembered(progress, v, omega), Wish(v, omega, controller, action)
@@ -51,15 +54,25 @@ def leads(policy: GridPolicy, sight: Sight) -> bool:
     return policy.docking and int(policy.act(_state(sight))[0]) != UNKNOWN
 
 
-def is_there(rules: Rules, sight: Sight) -> bool:
-    """Whether a policy that leads to the pick-up has brought the robot so near that the servo can take over."""
-    near = sight.tilt_rad >= rules.task.arrival_tilt_rad - _NEAR_RAD
-    return near and abs(sight.beta_rad) < _STRAIGHT_RAD and abs(sight.alpha_rad) < _STRAIGHT_RAD
+def is_there(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> bool:
+    """Whether a policy that leads to the pick-up has brought the robot so near that the landing can take over."""
+    if sight.tilt_rad < rules.task.arrival_tilt_rad - _NEAR_RAD:
+        return False
+    beta, alpha = abs(sight.beta_rad), abs(sight.alpha_rad)
+    if beta < _BEFORE_RAD and alpha < _FACING_RAD:
+        return True
+    stuck = int(policy.act(_ahead(rules, policy, progress, sight))[0]) == UNKNOWN
+    return stuck and beta < _ASIDE_RAD and alpha < _ASKEW_RAD
 
 
 def remembered(progress: Progress, v_mps: float, omega_radps: float) -> Progress:
     """With the command of this frame."""
-    return replace(progress, sent=(*progress.sent, v_mps, omega_radps)[-2 * LONGEST_DELAY :])
+    return replace(progress, sent=(*progress.sent, v_mps, omega_radps)[-2 * LONGEST_HOLD :])
+
+
+def _ahead(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> NDArray[np.float64]:
+    """State `[1, 3]` in which this frame's command comes into force."""
+    return predicted(policy.model, _state(sight), _sent(policy, progress), rules.params.sampling_period_s)
 
 
 def _state(sight: Sight) -> NDArray[np.float64]:

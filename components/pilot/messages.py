@@ -61,6 +61,7 @@ def _fine(policy: Policy, actions: tuple[tuple[float, float], ...]) -> GridPolic
             (fine.noise[0], fine.noise[1], fine.noise[2]),
         ),
         docking=fine.docking,
+        back_samples=fine.back_samples,
         version=policy.version,
         method=policy.method,
         samples=policy.transitions,

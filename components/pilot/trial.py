@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from components.pilot import diagnosis, reverse
-from components.pilot.choice import is_at_goal, steer, table_of
+from components.pilot.choice import is_at_goal, is_off_limits, landing_policy, steer, table_of
 from components.pilot.evidence import Evidence
+from components.pilot.landing import has_landed, land
 from components.pilot.progress import REST, Heard, Held, Mode, Outcome, Phase, Progress, Step, Wish
 from components.pilot.rules import NS, Rules
 from components.pilot.servo import has_arrived, servo
@@ -121,9 +122,15 @@ def _servo(rules: Rules, progress: Progress, frame: Frame) -> Step:
         return _ended(progress, failure)
     if not frame.sight.visible:
         return _wait(rules, replace(progress, mode=int(Mode.WAIT), mode_began_ns=frame.time_ns), frame)
-    if has_arrived(rules, frame.sight):
+    if _has_arrived(rules, progress, frame):
         return replace(progress, arrived_ns=frame.time_ns), Wish(controller="servo")
-    return progress, servo(rules, frame.sight)
+    lands = landing_policy(rules, frame.table, progress) is not None
+    return progress, land(rules, frame.sight) if lands else servo(rules, frame.sight)
+
+
+def _has_arrived(rules: Rules, progress: Progress, frame: Frame) -> bool:
+    lands = landing_policy(rules, frame.table, progress) is not None
+    return has_landed(rules, frame.sight) if lands else has_arrived(rules, frame.sight)
 
 
 def _settle(rules: Rules, progress: Progress, frame: Frame) -> Step:
@@ -133,7 +140,7 @@ def _settle(rules: Rules, progress: Progress, frame: Frame) -> Step:
     fresh = heard.base_ns > progress.arrived_ns
     if not (still and fresh) and _since(frame, progress.arrived_ns) < rules.params.settle_s:
         return progress, Wish(controller="servo")
-    if frame.sight.visible and not has_arrived(rules, frame.sight):
+    if frame.sight.visible and not _has_arrived(rules, progress, frame):
         return _servo(rules, replace(progress, arrived_ns=-1), frame)
     if not rules.params.pick_up:
         return _ended(progress, Outcome.ARRIVED)
@@ -205,7 +212,7 @@ def _failure(rules: Rules, progress: Progress, frame: Frame) -> Outcome | None:
     sight = frame.sight
     if _bumped(progress, frame):
         return Outcome.COLLIDED
-    if sight.visible and rules.grid.cell(sight.beta_rad, sight.alpha_rad) == SINK:
+    if sight.visible and is_off_limits(rules, frame.table, progress, sight):
         return Outcome.SINK
     if _since(frame, progress.began_ns) > rules.params.trial_timeout_s:
         return Outcome.TIMED_OUT

@@ -42,11 +42,13 @@ class PerceptualMethod:
             memory_s=settings.memory_s,
             surprise=settings.surprise,
             trust_per_s=settings.trust_per_s,
+            back_samples=settings.back_samples,
             explore=settings.explore,
         )
         near, far = (1.0 / math.tan(tilt) for tilt in (task.start_tilt_max_rad, task.start_tilt_min_rad))
         self._shown_d = near + _SHOWN_TILT_SHARE * (far - near)
-        self.learner = Perceptual(planning, limits_of(task, docking=settings.goal == "dock"), task.actions)
+        room_rad = (settings.room_beta_rad, settings.room_alpha_rad)
+        self.learner = Perceptual(planning, limits_of(task, room_rad, docking=settings.goal == "dock"), task.actions)
         self._newest_ns = -1
         self._compile()
 
