@@ -72,12 +72,13 @@ class ShadowReader:
         self._task = task_of(launch)
         self._waiting: dict[int, dict[str, Any]] = {}
 
-    def take(self, logged: Logged) -> None:
-        """Take one message; those of others are passed over."""
-        name = self._names.get(logged.topic)
-        message = logged.decoded() if name is not None else None
-        if name is None or message is None:
-            return
+    def wants(self, topic: str) -> bool:
+        """Whether messages of this topic are to be taken."""
+        return topic in self._names
+
+    def take(self, logged: Logged, message: Any) -> None:
+        """Take one message of a topic that is wanted."""
+        name = self._names[logged.topic]
         parts = self._waiting.setdefault(logged.capture_ns, {})
         parts[name] = message
         if len(parts) == len(self._names):

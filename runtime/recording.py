@@ -148,18 +148,36 @@ class Recording:
 
     def topics(self) -> list[Topic]:
         """What is in the file, per key and run, in order of appearance."""
-        tallies: dict[tuple[str, int], _Tally] = {}
+        tallies = Tallies()
         for logged in self.messages():
-            key = (logged.topic, logged.run)
-            tally = tallies.get(key)
-            if tally is None:
-                tally = tallies[key] = _Tally(logged)
-            tally.add(logged)
-        return [tally.topic() for tally in tallies.values()]
+            tallies.add(logged)
+        return tallies.topics()
+
+
+class Tallies:
+    """Counts the messages of each key and run."""
+
+    def __init__(self) -> None:
+        """Nothing is counted."""
+        self._tallies: dict[tuple[str, int], _Tally] = {}
+
+    def add(self, logged: Logged) -> None:
+        """Count one message."""
+        key = (logged.topic, logged.run)
+        tally = self._tallies.get(key)
+        if tally is None:
+            tally = self._tallies[key] = _Tally(logged)
+        tally.add(logged)
+
+    def topics(self) -> list[Topic]:
+        """What was counted, in order of appearance."""
+        return [tally.topic() for tally in self._tallies.values()]
 
 
 class _Tally:
     """Counts the messages of one key and run."""
+
+    __slots__ = ("_bytes", "_count", "_first", "_gaps", "_last", "_lost", "_next")
 
     def __init__(self, first: Logged) -> None:
         self._first, self._last = first, first
@@ -169,9 +187,9 @@ class _Tally:
     def add(self, logged: Logged) -> None:
         self._count += 1
         self._bytes += len(logged.payload)
-        hole = max(0, logged.sequence - self._next)
-        self._lost += hole
-        self._gaps += hole > 0
+        if logged.sequence > self._next:
+            self._lost += logged.sequence - self._next
+            self._gaps += 1
         self._next = logged.sequence + 1
         self._last = logged
 

@@ -131,8 +131,9 @@ def logged(tmp_path, frames):
 
 def compared(recording):
     reader = ShadowReader(recording.launch())
-    for message in recording.messages():
-        reader.take(message)
+    for logged in recording.messages():
+        if reader.wants(logged.topic):
+            reader.take(logged, logged.decoded())
     return reader
 
 

@@ -41,8 +41,8 @@ def headings(text: str) -> list[str]:
 
 
 def is_self_contained(text: str) -> bool:
-    sources = re.findall(r"src\s*=\s*['\"]?([^'\" >]*)", text)
-    return all(source.startswith("data:image/png;base64,") for source in sources) and not re.search(
+    sources = re.findall(r"(?:src|href)\s*=\s*['\"]?([^'\" >]*)", text)
+    return all(re.match(r"data:image/(png|jpeg);base64,", source) for source in sources) and not re.search(
         r"https?:|<script|<link|@import|url\(", text
     )
 
@@ -51,22 +51,35 @@ def test_the_page_needs_nothing_from_elsewhere(page):
     assert is_self_contained(page)
     assert not is_self_contained("<img src='http://a/b.png'>")
     assert not is_self_contained("<img src=b.png>")
+    assert not is_self_contained("<svg><image href='b.png'/></svg>")
 
 
 def test_the_page_has_its_sections_and_pictures(page):
     assert headings(page) == [
-        "What became of the trials",
-        "Why trials failed",
-        "Training",
-        "The frozen policy, minute by minute",
-        "Paths, from above",
+        "Learning",
+        "Docking",
+        "What went wrong",
         "What was learned",
         "What the robot saw",
-        "Tracking",
+        "Latency",
         "Messages",
         "Configuration",
     ]
-    assert page.count("<img") >= 7
+    assert page.count("<svg") >= 8
+    assert page.count("<img") == 4, "approach, servo, grasp, reverse"
+    assert all(re.search(r"aria-label='[^']{20,}", chart) for chart in page.split("<svg")[1:])
+
+
+def test_four_questions_are_answered_first(page):
+    tiles = re.findall(r"<div class='tile (\w+)'>(.*?)<b>(.*?)</b>", page)
+    assert [question for _, question, _ in tiles] == [
+        "Did it learn?",
+        "Does it dock?",
+        "How fast?",
+        "What went wrong?",
+    ]
+    assert tiles[1][0] == "fair", "one docking does not show that it docks well"
+    assert tiles[1][2].endswith("1 of 1")
 
 
 def test_the_page_says_that_the_session_is_complete_and_what_it_holds(page, twins):
@@ -75,8 +88,8 @@ def test_the_page_says_that_the_session_is_complete_and_what_it_holds(page, twin
     assert "torn" not in page
     session = read(twins.first)
     assert f"<td>camera/image</td><td class=n>{session.counts['camera/image']}</td>" in page
-    evaluation = next(row for row in re.findall(r"<tr>(.*?)</tr>", page) if row.startswith("<td>evaluation"))
-    assert re.findall(r">(\d+)<", evaluation)[:4] == ["1", "1", "1", "1"], "trials, reached, docked, picked"
+    rows = dict(re.findall(r"<tr><td>(\w+)</td><td class=n>\d+</td><td class=n>(\d+)</td></tr>", page))
+    assert [rows[name] for name in ("trials", "reached", "docked", "picked")] == ["1", "1", "1", "1"]
 
 
 def test_tracking_is_compared_with_the_truth_of_the_same_frame(twins):
@@ -89,9 +102,10 @@ def test_a_session_without_trials_has_a_page(short, tmp_path):
     file, _ = write_report(short[0], tmp_path / "short.html")
     text = file.read_text(encoding="utf-8")
     assert is_self_contained(text)
-    assert headings(text)[0] == "What became of the trials"
-    assert "Training" not in headings(text)
-    assert "<td>evaluation</td><td class=n>0</td>" in text
+    assert "It did not train in this session" in text
+    assert "No trial ended in this session." in text
+    assert "No policy was published in this session." in text
+    assert headings(text)[0] == "Learning"
 
 
 def test_a_torn_session_has_a_page_that_says_so(twins, tmp_path):
@@ -114,7 +128,7 @@ def test_a_file_that_is_no_session_is_refused(tmp_path):
 
 def test_names_in_a_session_are_text_not_markup(short, tmp_path):
     _, system = short
-    file = tmp_path / "<b>bold.mcap"
+    file = tmp_path / "<u>bold.mcap"
     log = LogWriter(file, system, started="<script>alert(1)</script>")
     log.write("<i>topic</i>/x", "berth.Truth", b"", 1, 0, 0, 0)
     log.close()
@@ -122,7 +136,7 @@ def test_names_in_a_session_are_text_not_markup(short, tmp_path):
     text = page.read_text(encoding="utf-8")
     assert is_self_contained(text)
     assert "<i>" not in text
-    assert "<b>" not in text
+    assert "<u>" not in text
 
 
 def strange(system, file, number: int):
