@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test setup setup-dev lint docs docs-check schemas lock bench clean
+.PHONY: demo test setup setup-view setup-dev lint docs docs-check schemas lock bench clean
 
 demo: setup  ## the main job: a simulated robot learns to dock, from camera images
 	$(BIN)/berth run launch/sim.toml
@@ -13,6 +13,7 @@ test: setup-dev lint  ## lint, types and tests
 	$(BIN)/pytest
 
 setup: $(VENV)/lab.stamp  ## .venv with what the demo needs
+setup-view: $(VENV)/view.stamp  ## what `berth view` needs: 720 MB more
 setup-dev: $(VENV)/dev.stamp
 
 $(VENV)/lab.stamp: requirements/lab.lock pyproject.toml
@@ -20,6 +21,10 @@ $(VENV)/lab.stamp: requirements/lab.lock pyproject.toml
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements/build.lock
 	$(BIN)/python -m pip install --quiet --require-hashes -r $<
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+$(VENV)/view.stamp: requirements/view.lock $(VENV)/lab.stamp
+	$(BIN)/python -m pip install --quiet --require-hashes -r $<
 	touch $@
 
 $(VENV)/dev.stamp: requirements/dev.lock $(VENV)/lab.stamp
@@ -42,7 +47,7 @@ schemas: setup-dev  ## regenerate schemas/*_pb2.py
 
 lock:  ## resolve anew; uv is needed only here
 	test -x $(VENV)/uv/bin/uv || { $(PYTHON) -m venv $(VENV)/uv && $(VENV)/uv/bin/pip install --quiet uv; }
-	for role in robot lab dev; do \
+	for role in robot lab view dev; do \
 	  extra=$$([ $$role = robot ] || echo "--extra $$role"); \
 	  $(VENV)/uv/bin/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	    --no-emit-index-url --no-header pyproject.toml $$extra -o requirements/$$role.lock || exit 1; \

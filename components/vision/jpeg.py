@@ -34,9 +34,9 @@ def decode(data: bytes, width_px: int, height_px: int) -> Image:
     Raises:
         JpegError: not a baseline colour JPEG of that size, damaged, or blank.
     """
-    size = _check(data)
-    if size != (width_px, height_px):
-        raise JpegError(f"the image is {size[0]}x{size[1]} px; expected {width_px}x{height_px}")
+    found = size(data)
+    if found != (width_px, height_px):
+        raise JpegError(f"the image is {found[0]}x{found[1]} px; expected {width_px}x{height_px}")
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
     except cv2.error as error:
@@ -53,29 +53,33 @@ def _one_colour(rows: cv2.typing.MatLike) -> bool:
     return bool((rows == rows[0, 0]).all())
 
 
-def _check(data: bytes) -> tuple[int, int]:
-    """(width, height) that the header announces."""
+def size(data: bytes) -> tuple[int, int]:
+    """(width, height) that the header of a baseline colour JPEG announces.
+
+    Raises:
+        JpegError: it is none.
+    """
     if len(data) > BYTES_MAX:
         raise JpegError(f"the image has {len(data)} bytes; at most {BYTES_MAX} are read")
     if data[:2] != b"\xff\xd8":
         raise JpegError("the image is not a JPEG")
-    size, at = None, 2
+    found, at = None, 2
     for _ in range(SEGMENTS_MAX):
         marker, length = _segment(data, at)
         if marker in FRAMES:
-            if size is not None:
+            if found is not None:
                 raise JpegError("the JPEG has two frame headers")
-            size = _frame(data, at, marker)
+            found = _frame(data, at, marker)
         at += 2 + length
         if marker == SCAN:
             break
     else:
         raise JpegError("the JPEG has no scan")
-    if size is None:
+    if found is None:
         raise JpegError("the JPEG has no frame header")
     if STRAY_MARKER.search(data, at):
         raise JpegError("the JPEG is damaged: a marker inside the scan")
-    return size
+    return found
 
 
 def _segment(data: bytes, at: int) -> tuple[int, int]:

@@ -1,0 +1,48 @@
+"""Which topics are shown, where several have one schema: those that the launch file wires."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+_PORTS = {
+    "image": "foxglove.CompressedImage",
+    "view": "berth.View",
+    "head": "berth.HeadState",
+    "percept": "berth.Percept",
+    "applied": "berth.Applied",
+    "policy": "berth.Policy",
+}
+"""Input port -> schema: what a component reads under this name is what the robot goes by."""
+STATUS = "berth.Status"
+TRIAL, TRUTH = "berth.Trial", "berth.Truth"
+SCHEMAS = frozenset({*_PORTS.values(), STATUS, TRIAL, TRUTH, "berth.SessionEnd"})
+"""Everything that is looked at; a viewer need not listen to more."""
+
+
+class Wiring:
+    """The one topic of each schema; a schema that nothing is wired to is the first topic's that has it."""
+
+    def __init__(self, launch: Mapping[str, Any]) -> None:
+        """Read a resolved launch file of any release: nothing is taken for granted."""
+        self._keys = {TRIAL: launch.get("trial"), TRUTH: launch.get("truth")}
+        for inputs in _inputs(launch):
+            for port, schema in _PORTS.items():
+                if isinstance(inputs.get(port), str):
+                    self._keys.setdefault(schema, inputs[port])
+
+    def takes(self, topic: str, schema: str) -> bool:
+        """Whether a message is to be shown."""
+        if schema == STATUS:
+            return True
+        if schema not in SCHEMAS:
+            return False
+        if not self._keys.get(schema):
+            self._keys[schema] = topic
+        return self._keys[schema] == topic
+
+
+def _inputs(launch: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    specs = launch.get("components")
+    rows = [spec.get("inputs") for spec in specs if isinstance(spec, dict)] if isinstance(specs, list) else []
+    return [row for row in rows if isinstance(row, dict)]
