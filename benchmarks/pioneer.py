@@ -15,6 +15,12 @@ from benchmarks.trials import LAUNCH, evaluate
 from docking.score import Trial
 
 STARTS = 200
+LATE = (
+    "simulator.wiring={camera_latency_s=0.2,encoder_latency_s=0.2}",
+    "tracker.camera_latency_s=0.2",
+    "tracker.encoder_latency_s=0.2",
+)
+"""Where the camera looked is known 0.2 s later, and pictures wait for it."""
 _DIRECT, _SERIAL = '"components.simulator"', '"tests.pioneer.serial_world"'
 
 
@@ -35,7 +41,7 @@ def evaluate_serially(overrides: Sequence[str], first: int, count: int) -> list[
     with tempfile.TemporaryDirectory() as folder:
         launch = Path(folder) / "serial.toml"
         launch.write_text(LAUNCH.read_text(encoding="utf-8").replace(_DIRECT, _SERIAL), encoding="utf-8")
-        return evaluate(overrides, first, count, launch)
+        return evaluate((*LATE, *overrides), first, count, launch)
 
 
 def _share(word: str, direct: Sequence[Trial], serial: Sequence[Trial]) -> Figure:

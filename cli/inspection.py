@@ -25,6 +25,7 @@ LONGEST_S, SILENCE_S = 120.0, 30.0
 """Session time after which a stage is given up, and wall time without a frame."""
 _TOO_SLOW = f"not at its end after {LONGEST_S:g} s: frames come too slowly"
 _KEPT = ("components.simulator", "components.camera", "components.vision", "components.head", "components.base")
+"""And whatever shows vision its pictures."""
 _BEGINS = {"facing": "facing", "head": "facing", "fingertips": "fingertips"}
 _TILT_BELOW_RAD = 0.09
 """The head may be told to look up by this, so that a tilt that runs the wrong way shows itself."""
@@ -46,8 +47,13 @@ class Result:
 
 
 def of_run(system: System, run: str) -> ComponentSpec | None:
-    """The component of a package, None if there is none."""
-    return next((spec for spec in system.components if spec.run == run), None)
+    """The component of a package or of one's own with the same ports (one's own robot); None if there is none."""
+    return next((spec for spec in system.components if _plays(spec, run)), None)
+
+
+def _plays(spec: ComponentSpec, run: str) -> bool:
+    outputs = ports_of(run).OUTPUTS
+    return spec.run == run or (bool(outputs) and outputs == ports_of(spec.run).OUTPUTS)
 
 
 def inspected(system: System, stage: str) -> System:
@@ -56,8 +62,11 @@ def inspected(system: System, stage: str) -> System:
     Raises:
         ConfigurationError: one of them is missing.
     """
-    kept = [spec for spec in system.components if spec.run in _KEPT]
     vision, head, base = (_demanded(system, f"components.{name}") for name in ("vision", "head", "base"))
+    shown = vision.inputs.get("image")
+    kept = [
+        spec for spec in system.components if shown in spec.outputs.values() or any(_plays(spec, run) for run in _KEPT)
+    ]
     names = [spec.name for spec in kept]
     changed = [_changed(spec, stage, names) for spec in kept]
     made = dataclasses.replace(
@@ -79,15 +88,15 @@ def _demanded(system: System, run: str) -> ComponentSpec:
 
 def _changed(spec: ComponentSpec, stage: str, names: Sequence[str]) -> ComponentSpec:
     """The component with the inspector as its commander."""
-    if spec.run == "components.simulator":
+    if _plays(spec, "components.simulator"):
         params = {**spec.params, "begins": _BEGINS[stage], "home_tilt_rad": 0.0}
         inputs = {"drive": spec.inputs["drive"], "aim": spec.inputs["aim"], "trial": f"{NAME}/trial"}
         return dataclasses.replace(spec, inputs=inputs, params=params)
-    if spec.run == "components.head":
+    if _plays(spec, "components.head"):
         low = min(float(spec.params["tilt_low_rad"]), -_TILT_BELOW_RAD)
         inputs = {**spec.inputs, "aim": f"{NAME}/aim"}
         return dataclasses.replace(spec, inputs=inputs, params={**spec.params, "tilt_low_rad": low})
-    if spec.run == "components.base":
+    if _plays(spec, "components.base"):
         inputs = {"pilot": f"{NAME}/drive", "device": spec.inputs["device"]}
         params = {**spec.params, "commanders": ("pilot",), "begins_with": (), "stop_when_gone": (*names, NAME)}
         return dataclasses.replace(spec, inputs=inputs, params=params)

@@ -24,8 +24,6 @@ from schemas.view_pb2 import View
 
 FINISHED = "finished"
 """Reason of an end after the whole script."""
-_WAIT_FRAMES = 16
-"""Frames without a word from head or base that end the check."""
 _MOST_ROWS = 10_000
 """Readings kept."""
 
@@ -81,16 +79,26 @@ class Inspector:
         return outputs
 
     def _step(self, view: View, capture_ns: int) -> Wish:
-        if self._head is None or self._base is None:
+        if not self._ready():
             self._waited += 1
-            if self._waited <= _WAIT_FRAMES:
+            if self._waited * self._params.frame_s <= self._params.wait_s:
                 return Wish()
+        if self._head is None or self._base is None:
             self._run.end(f"{'head' if self._head is None else 'base'} says nothing")
         if view.object_visible:
             self._keep(self._seen, capture_ns, view.object_u_px, view.object_v_px)
         base, head = self._base or BaseState(), self._head or HeadState()
         reason = self._stopped_by if not base.guard else "guard"
         return self._run.step(_sample(view, head, base, capture_ns), Robot(base.bumper, reason))
+
+    def _ready(self) -> bool:
+        """Head and base have told of themselves, and are connected; once they have, what follows is no beginning."""
+        if self._run.samples:
+            return True
+        head, base = self._head, self._base
+        if head is None or base is None or base.guard:
+            return False
+        return math.isfinite(head.pan_rad) and math.isfinite(head.tilt_rad)
 
     def _keep(self, rows: list[tuple[float, float, float]], time_ns: int, first: float, second: float) -> None:
         if self._params.stage == "head" and len(rows) < _MOST_ROWS and math.isfinite(first) and math.isfinite(second):

@@ -39,6 +39,9 @@ class Params:
     """Roughly how far off the object stands; units are wrong by a factor of ten at least."""
     zero_rad: float = positive(7 * DEG)
     """The head must read less than this before it is moved: who stands at zero goes nowhere, whatever the signs."""
+    wait_s: float = positive(12.0)
+    """Longest wait for head and base in the beginning: a robot is connected to in 2 s, a VC-C4 is busy for 5 s after it
+    has been switched on."""
     lost_frames: int = between(4, 1, 40)
     """Frames without the object, or with the robot stopped by base, that end the check."""
     width_px: int = positive(320)

@@ -153,7 +153,7 @@ def inspector():
     return hand
 
 
-def until_the_end(hand, frames=60, **messages):
+def until_the_end(hand, frames=130, **messages):
     said = [hand(**messages) for _ in range(frames)]
     assert all({"aim", "drive", "trial"} <= set(answer) for answer in said), "every view is answered"
     ends = [answer["end"].reason for answer in said if "end" in answer]

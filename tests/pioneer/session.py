@@ -80,11 +80,12 @@ def peoplebot(folder, start=NEAR, camera=Canon, **options):
     Args:
         folder: for sockets.
         start: where it stands.
-        camera: kind of camera; it hangs upside down.
-        options: of the camera.
+        camera: kind of camera.
+        options: of the camera; it hangs upside down.
     """
-    body = Body(Params(), start, 0)
-    with Served(Serial(), body, cameras={1: camera(lambda: body.head, inverted=True, **options)}) as served:
+    body = Body(Params(home_tilt_rad=0.0), start, 0)
+    mounted = camera(lambda: body.head, **{"inverted": True, **options})
+    with Served(Serial(), body, cameras={1: mounted}) as served:
         served.showing = Showing(folder / "eyes", served)
         try:
             yield served

@@ -16,7 +16,7 @@ from runtime.line import Line, LineError, listen
 from schemas.head_pb2 import HeadCommand, HeadState
 
 _REOPEN_S = 0.5
-_AUX_WAY_S = 0.027
+AUX_WAY_S = 0.027
 """At a robot's auxiliary port: two packets before the request and one around it, 26 bytes at 9600 baud."""
 
 
@@ -27,7 +27,7 @@ class _PanTilt:
         self._params = params
         self._is_aux = params.port.startswith("unix:")
         self._turn = threading.Lock()
-        self._camera = Camera(speech, params, time.monotonic_ns(), _AUX_WAY_S if self._is_aux else 0.0)
+        self._camera = Camera(speech, params, time.monotonic_ns(), AUX_WAY_S if self._is_aux else 0.0)
         self._line: Line | None = None
         self._reopen_s = 0.0
         try:
