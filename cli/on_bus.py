@@ -69,7 +69,7 @@ def _follow(supervisor: Supervisor, watch: Watch, waiting: deque[tuple[Any, int]
     while supervisor.poll(0.1):
         _take_all(watch, waiting)
         watch.note = supervisor.note
-        watch.refusal = supervisor.refusal
+        watch.refusal, watch.restarted = supervisor.refusal, supervisor.restarted
         watch.show()
         if watch.over:
             supervisor.stop_soon(watch.over)

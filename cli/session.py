@@ -48,6 +48,8 @@ class Watch:
         self.refused = 0
         self.refusal = ""
         """How many messages were refused, and why."""
+        self.restarted = ""
+        """How often a component was started again, and why."""
         self.note = ""
         """What is wrong at the moment, in words."""
         self.drives = ""
@@ -65,7 +67,13 @@ class Watch:
 
     def show(self) -> None:
         """Refresh the progress if it is time to."""
-        more = {"drives": self.drives, "keys": self.usage, "refused": self.refusal, "note": self.note}
+        more = {
+            "drives": self.drives,
+            "keys": self.usage,
+            "refused": self.refusal,
+            "restarted": self.restarted,
+            "note": self.note,
+        }
         self._progress.update(self.board, time.monotonic() - self._began_s, self.messages, self.lost, more)
 
     def summary(self, reason: str, recording: Path | None) -> Summary:

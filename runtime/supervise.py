@@ -128,6 +128,12 @@ class Supervisor:
         return self._meeting.note
 
     @property
+    def restarted(self) -> str:
+        """How often somebody was started again, and why the last time; empty = never."""
+        again = [death for death in self.deaths if death.restarted]
+        return f"{len(again)}; {again[-1].words}" if again else ""
+
+    @property
     def messages(self) -> int:
         """Messages published on output ports, as the components last said."""
         return sum(status.published for status in list(self.statuses.values()))

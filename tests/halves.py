@@ -40,15 +40,19 @@ class Halves(NamedTuple):
         return [json.loads(out) for out, _ in outputs]
 
 
-def start(cable: Cable, directory: Path, *words: str, launch: str = LAUNCH, record: bool = True) -> Halves:
-    """`berth run` on both, in a realm of their own; the laptop records and makes a report."""
+def start(
+    cable: Cable, directory: Path, *words: str, launch: str = LAUNCH, record: bool = True, keys: Path | None = None
+) -> Halves:
+    """`berth run` on both, in a realm of their own, with keys if given; the laptop records and makes a report."""
     file = directory / "two.toml"
     realm = f"test/{directory.parent.name}-{directory.name}"
     file.write_text(launch.replace('"berth/sim2"', f'"{realm}"'), encoding="utf-8")
-    there = f"tcp/{ROBOT_ADDRESS}:7447"
+    there = f"{'tls' if keys else 'tcp'}/{ROBOT_ADDRESS}:7447"
+    guard = ("--keys", str(keys)) if keys else ()
+    alone = () if keys else ("--insecure",)
     recording = ("--record", str(directory / "laptop.mcap")) if record else ("--no-record",)
-    common = ("--json", *recording, *words)
-    robot = ("run", str(file), "--host", "robot", "--listen", there, "--insecure", *common)
+    common = ("--json", *recording, *guard, *words)
+    robot = ("run", str(file), "--host", "robot", "--listen", there, *alone, *common)
     laptop = ("run", str(file), "--host", "laptop", "--connect", there, *common)
     return Halves(cable.robot.berth(*robot), cable.laptop.berth(*laptop))
 

@@ -1,4 +1,4 @@
-"""`launch/sim2.toml` on two machines: the robot drives by itself, the laptop learns and records, the link is cut."""
+"""`launch/sim2.toml` on two machines with keys: the robot drives, the laptop learns and records, the link is cut."""
 
 import subprocess
 from collections import Counter
@@ -13,6 +13,7 @@ import pytest
 from benchmarks.watched import START_S, command_line, wait_until
 from runtime.recording import Recording
 from tests.halves import APPROACH, FRAME_NS, Echo, Halves, awaits_run_file, echoed, start
+from tests.keys import made
 from tests.machines import ROOT, Cable, two_machines
 
 pytestmark = pytest.mark.xdist_group("live")
@@ -46,7 +47,7 @@ class Story(NamedTuple):
 def story(tmp_path_factory) -> Iterator[Story]:
     directory = tmp_path_factory.mktemp("story")
     with two_machines(directory) as cable:
-        halves = start(cable, directory)
+        halves = start(cable, directory, keys=made(directory / "keys", "robot", "laptop"))
         awaits_run_file(cable.robot)
         cable.robot.berth("record", "-o", str(directory / "robot.mcap"))
         awaits_run_file(cable.laptop)

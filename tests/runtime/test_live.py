@@ -139,6 +139,7 @@ def test_a_restarted_component_goes_on_and_time_is_held_meanwhile(tmp_path):
         run_to_end(supervisor)
     assert supervisor.end_reason == "all frames shown"
     assert [(death.name, death.restarted) for death in supervisor.deaths] == [("echo", True)]
+    assert supervisor.restarted == "1; echo ended with exit code 1: RuntimeError: told to crash"
     assert supervisor.exit_code == 0
     rows = heard(system)
     assert len({row.run for row in rows if row.key == "echo/drive"}) == 2
