@@ -42,7 +42,9 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 _SCHEMA = "foxglove.CompressedImage"
 _REGION = re.compile(r"\d{1,5},\d{1,5}(,\d{1,5},\d{1,5})?")
 
-calibrate = typer.Typer(help="Let the eyes learn from what they see.", no_args_is_help=True, rich_markup_mode=None)
+calibrate = typer.Typer(
+    help="Let the eyes learn from what they see.", no_args_is_help=True, rich_markup_mode=None, add_completion=False
+)
 
 
 @calibrate.callback()

@@ -16,6 +16,7 @@ import typer.core
 from rich.console import Console
 from rich.table import Table
 
+from cli.doing import QUIET, doing
 from cli.hardware import hardware
 from cli.stand_in import devices, has_world, simulated
 from runtime.check import Finding
@@ -49,11 +50,13 @@ check.command("hardware")(hardware)
 
 
 @check.command(CONTRACT)
-def contract(launch: LAUNCH = None, duration: DURATION = 15.0, as_json: JSON = False) -> None:
+def contract(launch: LAUNCH = None, duration: DURATION = 15.0, quiet: QUIET = False, as_json: JSON = False) -> None:
     """Check this machine and a launch file's components. Example: berth check launch/sim.toml."""
     findings = _machine()
     if launch is not None:
-        findings += _tried(load(launch, clock="lockstep"), duration)
+        system = load(launch, clock="lockstep")
+        with doing("running every component", quiet=quiet or as_json):
+            findings += _tried(system, duration)
     kept = all(finding.kept for finding in findings)
     if as_json:
         rows = [finding._asdict() for finding in findings]

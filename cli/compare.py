@@ -59,7 +59,7 @@ def compare(
     as_json: JSON = False,
     quiet: QUIET = False,
 ) -> None:
-    """Which of two policies docks more often? Example: berth compare better.policy lc --in-process."""
+    """Find out which of two policies docks more often. Example: berth compare better.policy lc --in-process."""
     if not 0.0 < alpha < 1.0:
         raise ConfigurationError(f"--alpha must be between 0 and 1; got {alpha}")
     started = now()

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import DIFFERENT, GOOD, LOSSY
 from runtime.findings import Examination
 from runtime.recording import Recording
@@ -19,13 +20,14 @@ _LOSSES = {"file", "sequence", "journal"}
 """Kinds of finding that say: something is missing. The others say: something is wrong."""
 
 
-def doctor(file: FILE, as_json: JSON = False) -> None:
-    """Verify order, schemas, sequences and journals; exit code 3: something is missing, 1: something is wrong.
+def doctor(file: FILE, quiet: QUIET = False, as_json: JSON = False) -> None:
+    """Verify a recording's order, schemas, sequences, journals; exit code 3: something is missing, 1: it is wrong.
 
     Example: berth doctor recordings/sim.mcap.
     """
     examination = Examination(Recording(file))
-    findings = examination.run()
+    with doing(f"examining {file}", quiet=quiet or as_json):
+        findings = examination.run()
     if as_json:
         table = {"file": str(file), "messages": examination.messages, "findings": [f._asdict() for f in findings]}
         sys.stdout.write(json.dumps(table) + "\n")

@@ -6,13 +6,16 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Timer
+from typing import Annotated
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-AFTER_S = 2.0
-"""What is done sooner says nothing, where there is no terminal."""
+QUIET = Annotated[bool, typer.Option("--quiet", help="No progress.")]
 LINE_S = 10.0
+"""From one line to the next where there is no terminal. What is done sooner says nothing there."""
 Told = Callable[[float], None]
 
 
@@ -34,7 +37,11 @@ def doing(what: str, *, quiet: bool) -> Iterator[Told]:
             task = bar.add_task(what, total=None)
             yield lambda share: bar.update(task, total=1.0, completed=share)
     else:
-        yield _Lines(what).told
+        lines = _Lines(what)
+        try:
+            yield lines.told
+        finally:
+            lines.end()
 
 
 def _bar() -> Progress:
@@ -43,14 +50,24 @@ def _bar() -> Progress:
 
 
 class _Lines:
-    """A line now and then."""
+    """Says after a moment what is going on, and how far it is now and then."""
 
     def __init__(self, what: str) -> None:
         self._what = what
-        self._next_s = time.monotonic() + AFTER_S
+        self._next_s = time.monotonic() + 2 * LINE_S
+        self._first = Timer(LINE_S, self._say, [f"{what} ..."])
+        self._first.daemon = True
+        self._first.start()
 
     def told(self, share: float) -> None:
         """Say it if it is time to."""
         if time.monotonic() >= self._next_s:
             self._next_s = time.monotonic() + LINE_S
-            sys.stderr.write(f"{self._what}: {100 * share:.0f} %\n")
+            self._say(f"{self._what}: {100 * share:.0f} %")
+
+    def end(self) -> None:
+        """Nothing more is said."""
+        self._first.cancel()
+
+    def _say(self, line: str) -> None:
+        sys.stderr.write(line + "\n")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cli.doing import QUIET
 from runtime.params import ConfigurationError
 
 if TYPE_CHECKING:
@@ -51,9 +52,10 @@ def experiment(
     delay_samples: DELAY = 0,
     gripper_m: GRIPPER = None,
     neural: NEURAL = False,
+    quiet: QUIET = False,
     as_json: JSON = False,
 ) -> None:
-    """Run an experiment, or what is left of it; write CSV and pictures. Example: berth experiment ceiling."""
+    """Run an experiment, or what is left of it: tables, pictures. Example: berth experiment ceiling -o results."""
     _check(minutes, plant_noise, goal, turn_rate_dps, speed_mps, delay_samples, gripper_m)
     if neural and name != "schools":
         raise ConfigurationError(f"--neural belongs to schools; got experiment {name!r}")
@@ -75,7 +77,7 @@ def experiment(
         gripper_m=gripper_m,
         neural=neural,
     )
-    console, began = Console(stderr=True), time.monotonic()
+    console, began = None if quiet else Console(stderr=True), time.monotonic()
     outcome = run_campaign(load(name), options, output, backend=backend, workers=jobs, console=console)
     if as_json:
         sys.stdout.write(json.dumps(_numbers(name, outcome, time.monotonic() - began)) + "\n")

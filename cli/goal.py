@@ -15,6 +15,7 @@ from typing import Annotated
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.keys import pressed
 from cli.session import now, recording_name
 from cli.sight import Eye, Frame, eye_of, eye_started, loaded_eyes, recorded_frames, recorded_task, task_of
@@ -44,7 +45,12 @@ SET = Annotated[list[str] | None, typer.Option("--set", help="As for `berth run`
 NO_RECORD = Annotated[bool, typer.Option("--no-record", help="Record nothing of what is shown.")]
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
-goal = typer.Typer(help="The pose in which the object can be picked up.", no_args_is_help=True, rich_markup_mode=None)
+goal = typer.Typer(
+    help="Show the pose in which the object can be picked up.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    add_completion=False,
+)
 
 
 @goal.callback()
@@ -68,6 +74,17 @@ class _Shown:
         return self.frames[0].capture_ns / 1e9 if self.frames else 0.0
 
 
+@dataclass(frozen=True)
+class _Wish:
+    """What is asked of who looks."""
+
+    count: int
+    """Frames."""
+    at_once: bool
+    """Without waiting for a key."""
+    quiet: bool
+
+
 @goal.command()
 def teach(
     launch: LAUNCH = None,
@@ -80,11 +97,13 @@ def teach(
     realm: REALM = "",
     overrides: SET = None,
     no_record: NO_RECORD = False,
+    quiet: QUIET = False,
     as_json: JSON = False,
 ) -> None:
     """Put robot and object into the pick-up pose and press a key; the goal is written to a task file.
 
-    Example: berth goal teach launch/sim.toml -o goal.toml, then berth run launch/sim.toml --set pilot.task=goal.toml.
+    Example: berth goal teach launch/sim.toml -o goal.toml
+    berth run launch/sim.toml --set pilot.task=goal.toml
     """
     _check_options(launch, recording, at_s, realm, overrides)
     if output.exists():
@@ -93,9 +112,10 @@ def teach(
         if recording is not None:
             shown = _recorded(recording, at_s, frames)
         elif launch is not None:
-            shown = _started(launch, overrides or [], frames, at_once=at_once, record=not no_record)
+            file = None if no_record else recording_name(Path("goal"), now())
+            shown = _started(launch, overrides or [], file, _Wish(frames, at_once, quiet or as_json))
         else:
-            shown = _watched(realm, frames, at_once=at_once)
+            shown = _watched(realm, _Wish(frames, at_once, quiet or as_json))
         showing = Showing.of([frame.percept for frame in shown.frames])
         task = showing.task(shown.base, None if heading_deg is None else heading_deg * DEG)
     except (NotShownError, KeyboardInterrupt) as reason:
@@ -123,28 +143,28 @@ def _recorded(file: Path, at_s: float | None, count: int) -> _Shown:
     return _Shown(recorded_frames(recording, at_s, count), recorded_task(recording), str(file))
 
 
-def _started(launch: Path, overrides: list[str], count: int, *, at_once: bool, record: bool) -> _Shown:
-    file = recording_name(Path("goal"), now()) if record else None
+def _started(launch: Path, overrides: list[str], file: Path | None, wish: _Wish) -> _Shown:
     system = loaded_eyes(launch, overrides, file)
-    frames = _collect(eye_started(system), count, at_once=at_once)
+    frames = _collect(eye_started(system), wish)
     return _Shown(frames, task_of(system), str(file or launch))
 
 
-def _watched(realm: str, count: int, *, at_once: bool) -> _Shown:
+def _watched(realm: str, wish: _Wish) -> _Shown:
     run = find(realm)
-    return _Shown(_collect(eye_of(run), count, at_once=at_once), task_of(load(run.launch)), run.realm)
+    return _Shown(_collect(eye_of(run), wish), task_of(load(run.launch)), run.realm)
 
 
-def _collect(opened: AbstractContextManager[Eye], count: int, *, at_once: bool) -> list[Frame]:
+def _collect(opened: AbstractContextManager[Eye], wish: _Wish) -> list[Frame]:
     came = Event()
     with pressed(lambda _: came.set()) as terminal:
-        if not (terminal or at_once):
+        if not (terminal or wish.at_once):
             raise ConfigurationError("a key must be pressed on a terminal; without one use --now")
         with opened as eye:
-            if not at_once:
+            if not wish.at_once:
                 sys.stderr.write("Put robot and object into the pick-up pose, then press any key.\n")
                 eye.wait(came.is_set)
-            return eye.frames(count)
+            with doing("looking at the object", quiet=wish.quiet):
+                return eye.frames(wish.count)
 
 
 def _write(file: Path, text: str) -> None:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from cli.correction import Correction, corrected, corrections
+from cli.doing import QUIET, doing
 from cli.inspection import Result, inspected, of_run, run_stage
 from cli.inspection_report import Report, ask, load_table
 from runtime.launch import load
@@ -50,6 +51,7 @@ def hardware(
     seed: SEED = None,
     yes: YES = False,
     write: WRITE = False,
+    quiet: QUIET = False,
     as_json: JSON = False,
 ) -> None:
     """Find wrong signs, units and beams by small motions. Example: berth check hardware launch/sim.toml --yes."""
@@ -64,7 +66,8 @@ def hardware(
     changes: list[Correction] = []
     for each in stages:
         ask(STAGES[each], yes=yes, simulated=of_run(system, "components.simulator") is not None)
-        result, found = checked(system, changes, each, in_process=in_process)
+        with doing(f"checking: {each}", quiet=quiet or as_json):
+            result, found = checked(system, changes, each, in_process=in_process)
         results.append(result)
         changes += found
         if not result.finished:

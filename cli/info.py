@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import GOOD, LOSSY
 from docking.score import outcomes
 from report.failures import counted
@@ -25,10 +26,11 @@ FILE = Annotated[Path, typer.Argument(help="Recording (MCAP).")]
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
 
-def info(file: FILE, as_json: JSON = False) -> None:
+def info(file: FILE, quiet: QUIET = False, as_json: JSON = False) -> None:
     """Describe a recording; exit code 3 if something is missing. Example: berth info recordings/sim.mcap."""
-    session, topics = read(file), Recording(file).topics()
-    found = numbers(session, topics)
+    with doing(f"reading {file}", quiet=quiet or as_json):
+        session, topics = read(file), Recording(file).topics()
+        found = numbers(session, topics)
     if as_json:
         failed = [failure.table() for failure in session.failed]
         sys.stdout.write(json.dumps({**found, "failed": failed, "topics": [vars(topic) for topic in topics]}) + "\n")

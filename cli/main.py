@@ -10,6 +10,7 @@ from typing import Any
 import typer
 import typer.core
 
+from cli.layout import WIDTH, laid_out
 from runtime.params import ConfigurationError
 
 VERBS: dict[str, str] = {
@@ -62,19 +63,22 @@ def command(name: str, target: Any) -> Any:
     if not isinstance(target, typer.Typer):
         app = typer.Typer(add_completion=False, rich_markup_mode=None)
         app.command(name)(target)
-    made = typer.main.get_command(app)
+    made = laid_out(typer.main.get_command(app))
     made.name = name
     return made
 
 
 app = typer.Typer(
-    cls=Verbs, no_args_is_help=True, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=Verbs,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": WIDTH},
 )
 
 
 @app.callback()
 def berth() -> None:
-    """Let a mobile robot learn to dock at an object it sees."""
+    """Let a mobile robot learn to dock at an object it sees. `berth COMMAND -h` has an example of each command."""
 
 
 _Complaint: Any = typer.BadParameter.__mro__[2]

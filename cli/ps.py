@@ -16,7 +16,7 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON list on standard ou
 
 
 def ps(as_json: JSON = False) -> None:
-    """Show the systems that run on this host, and which of their components are up. Example: berth ps."""
+    """Show the systems that run on this host; which of their components are up. Example: berth ps."""
     runs = [(run, _present(run)) for run in running()]
     if as_json:
         sys.stdout.write(json.dumps([{**asdict(run), "up": up} for run, up in runs]) + "\n")

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import GOOD, LOSSY
 from runtime.mend import Mended, mend
 from runtime.recording import Recording
@@ -19,13 +20,14 @@ OUTPUT = Annotated[Path | None, typer.Option("-o", "--output", help="File to mak
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
 
-def recover(file: FILE, output: OUTPUT = None, as_json: JSON = False) -> None:
-    """Write what can be read into a new, finished file; exit code 3 if something is lost.
+def recover(file: FILE, output: OUTPUT = None, quiet: QUIET = False, as_json: JSON = False) -> None:
+    """Mend a recording; what can be read goes into a new, finished file; exit code 3 if something is lost.
 
     Example: berth recover recordings/torn.mcap.
     """
     target = output or file.with_name(f"{file.stem}-recovered.mcap")
-    mended = mend(Recording(file), target)
+    with doing(f"reading {file}", quiet=quiet or as_json):
+        mended = mend(Recording(file), target)
     if as_json:
         sys.stdout.write(json.dumps(_table(mended, target)) + "\n")
     else:

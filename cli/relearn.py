@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import DIFFERENT, GOOD, LOSSY
 from runtime.one_thread import limit_threads
 from runtime.params import ConfigurationError
@@ -28,12 +29,13 @@ def relearn(
     overrides: SET = None,
     output: OUTPUT = None,
     no_comparison: NO_COMPARISON = False,
+    quiet: QUIET = False,
     as_json: JSON = False,
 ) -> None:
-    """Feed the learner from recordings; exit code 1: the same parameters give other tables, 3: something is missing.
+    """Learn again from recordings; exit code 1: the same parameters give other tables, 3: something is missing.
 
-    Example: berth relearn recordings/sim.mcap --set learner.sweeps=4 -o policy.bin, then
-    berth run launch/sim.toml --set pilot.policy=policy.bin --set pilot.train_s=0.
+    Example: berth relearn recordings/sim.mcap --set learner.sweeps=4 -o better.policy
+    berth run launch/sim.toml --set pilot.policy=better.policy --set pilot.train_s=0
     """
     began_s = time.monotonic()
     limit_threads()
@@ -41,7 +43,8 @@ def relearn(
 
     if output is not None and output.exists():
         raise ConfigurationError(f"-o {output}: must not exist yet")
-    report = learn(files, component, overrides or (), compare=not no_comparison)
+    with doing("learning again", quiet=quiet or as_json):
+        report = learn(files, component, overrides or (), compare=not no_comparison)
     if output is not None:
         _write(output, report.policy())
     if as_json:

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import DIFFERENT, GOOD, LOSSY
 from runtime.one_thread import limit_threads
 from runtime.recording import Recording
@@ -32,15 +33,17 @@ def replay(
     check: CHECK = False,
     overrides: SET = None,
     output: OUTPUT = None,
+    quiet: QUIET = False,
     as_json: JSON = False,
 ) -> None:
-    """Run a component once more; exit code 3 if what could be compared is the same but something is missing.
+    """Run a component once more over a recording; exit code 3 if what can be compared is the same, not all is there.
 
     Example: berth replay recordings/sim.mcap --component tracker --check.
     """
     limit_threads()
     began_s = time.monotonic()
-    report = _replayed(Recording(file), component, overrides or [], output, compare=check or bool(overrides))
+    with doing(f"running {component} again", quiet=quiet or as_json):
+        report = _replayed(Recording(file), component, overrides or [], output, compare=check or bool(overrides))
     table = _table(report, time.monotonic() - began_s)
     if as_json:
         sys.stdout.write(json.dumps(table) + "\n")

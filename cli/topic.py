@@ -24,7 +24,9 @@ WINDOW = Annotated[float, typer.Option("-w", "--window", help="Seconds to count.
 _BYTES_SHOWN = 32
 _SLICE_S = 0.1
 
-topic = typer.Typer(help="Look at the bus of a running system.", no_args_is_help=True, rich_markup_mode=None)
+topic = typer.Typer(
+    help="Look at the bus of a running system.", no_args_is_help=True, rich_markup_mode=None, add_completion=False
+)
 
 
 @topic.command("list")

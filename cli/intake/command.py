@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from cli.doing import QUIET, doing
 from cli.exit_codes import GOOD, LOSSY
 from cli.intake import bag, folder
 from cli.intake.session import Intake, write
@@ -24,27 +25,39 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 
 
 def intake(
-    source: SOURCE, output: OUTPUT, image: IMAGE = "", odometry: ODOMETRY = "", hz: HZ = 8.0, as_json: JSON = False
+    source: SOURCE,
+    output: OUTPUT,
+    image: IMAGE = "",
+    odometry: ODOMETRY = "",
+    hz: HZ = 8.0,
+    quiet: QUIET = False,
+    as_json: JSON = False,
 ) -> None:
-    """Make a session; exit code 3 if something had to be left out. Example: berth import bag.mcap -o a.mcap.
+    """Make a session of a ROS 2 bag or a folder of images; exit code 3 if something had to be left out.
 
-    Then: berth replay SESSION.mcap --component vision -o seen.mcap, or launch/look.toml.
+    Example: berth import bag.mcap -o session.mcap
+    berth replay session.mcap --component vision -o seen.mcap
     """
     if not 0.01 <= hz <= 1000.0:
         raise ConfigurationError(f"--hz must be between 0.01 and 1000; got {hz}")
     faults: list[Fault] = []
-    if source.is_dir() and not bag.files_of(source):
-        made = write(folder.read(folder.images(source), hz), output, source)
-    else:
-        if source.suffix == ".db3":
-            raise ConfigurationError(f"{source}: must be a bag in MCAP; see `ros2 bag convert`")
-        files = bag.files_of(source)
-        topics = bag.chosen(bag.topics_of(files), image, odometry, source)
-        made = write(bag.read(files, topics, faults), output, source)
+    with doing(f"reading {source}", quiet=quiet or as_json):
+        made = _made(source, output, image, odometry, hz, faults)
     table = _table(made, output, faults)
     text = json.dumps(table) if as_json else "\n".join(f"{name:12} {value}" for name, value in table.items())
     sys.stdout.write(text + "\n")
     raise typer.Exit(LOSSY if made.skipped or faults else GOOD)
+
+
+def _made(source: Path, output: Path, image: str, odometry: str, hz: float, faults: list[Fault]) -> Intake:
+    """The session; what is wrong with the bag is appended to `faults`."""
+    if source.is_dir() and not bag.files_of(source):
+        return write(folder.read(folder.images(source), hz), output, source)
+    if source.suffix == ".db3":
+        raise ConfigurationError(f"{source}: must be a bag in MCAP; see `ros2 bag convert`")
+    files = bag.files_of(source)
+    topics = bag.chosen(bag.topics_of(files), image, odometry, source)
+    return write(bag.read(files, topics, faults), output, source)
 
 
 def _table(made: Intake, output: Path, faults: list[Fault]) -> dict[str, object]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterator
 from typing import Any
 
@@ -39,7 +40,7 @@ def _verb(words: str, verb: Any) -> Iterator[str]:
     arguments = [param for param in verb.params if param.param_type_name == "argument"]
     options = [param for param in verb.params if param.param_type_name == "option" and param.name != "help"]
     yield f"## {words}\n"
-    yield f"{_prose(verb.help or '')}\n"
+    yield f"{_prose(verb)}\n"
     if arguments:
         yield table(("argument", "what it is"), [(code(_shown(param)), param.help or "") for param in arguments])
     if options:
@@ -47,14 +48,11 @@ def _verb(words: str, verb: Any) -> Iterator[str]:
         yield table(("option", "default", "what it does"), rows)
 
 
-def _prose(text: str) -> str:
-    """Help as Markdown: what stands after `Example:` is a block of its own."""
-    words, _, example = text.partition("Example:")
-    lines = " ".join(words.split())
-    if not example:
-        return lines
-    command, _, rest = example.strip().partition("\n\n")
-    return f"{lines}\n\n```text\n{' '.join(command.split()).removesuffix('.')}\n```\n\n{' '.join(rest.split())}"
+def _prose(verb: Any) -> str:
+    """What it does, and its example."""
+    words = "\n\n".join(" ".join(part.split()) for part in (verb.help or "").split("\n\n"))
+    examples = (verb.epilog or "").partition("Example:")[2]
+    return f"{words}\n\n```text\n{inspect.cleandoc(examples)}\n```" if examples else words
 
 
 def _shown(param: Any) -> str:

@@ -7,6 +7,12 @@ import pytest
 from cli.main import main
 
 
+@pytest.fixture(autouse=True)
+def _in_time(monkeypatch):
+    """On a busy machine a command says no more than on a quiet one."""
+    monkeypatch.setattr("cli.doing.LINE_S", 600.0)
+
+
 @pytest.fixture
 def run(capsys, monkeypatch):
     """Runs `berth WORDS`; gives exit code, standard output and standard error."""

@@ -4,10 +4,9 @@
 """
 
 import pytest
-import typer
 
-from cli.main import app
 from runtime.launch import load
+from tests.docs.calls import parsed
 from tests.docs.page import MARKS, ROOT, blocks, pages, write_file
 from tests.docs.sandbox import Sandbox
 
@@ -19,16 +18,6 @@ DEADLINE_S = 300.0
 
 def ids(page):
     return str(page.relative_to(ROOT))
-
-
-def parsed(words):
-    """(verb, what it was given); raises what typer raises about a mistake."""
-    command = typer.main.get_command(app)
-    context = command.make_context("berth", list(words))
-    while rest := [*context._protected_args, *context.args]:
-        name, command, rest = command.resolve_command(context, rest)
-        context = command.make_context(name, rest)
-    return context.info_name, context.params
 
 
 def check_overrides(given):
