@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.simulator import lamp, scene
 from components.simulator.clip import clipped
+from components.simulator.panel import Panel
 from components.simulator.params import Params
 from docking.pinhole import Array, Camera
 
@@ -38,6 +39,7 @@ class Painter:
         self._colours = [self._paint(cast("Paint", tuple(colour))) for colour in self._scene.quads.colours.tolist()]
         self._rings, self._sides, light = scene.mantle(params)
         self._mantle = [self._paint(scene.shaded(scene.OBJECT, share)) for share in light.tolist()]
+        self._panel = Panel(params, self._gains) if params.object == "marker" else None
         self._top = self._paint(scene.shaded(scene.OBJECT, TOP_LIGHT))
 
     def _paint(self, colour: Paint) -> Paint:
@@ -48,7 +50,10 @@ class Painter:
         """`[height, width, 3]` blue, green, red; `object_m` is the object's centre, world `[3]`."""
         image = self._wall.copy()
         self._draw_scene(image, camera)
-        self._draw_object(image, camera, object_m)
+        if self._panel is not None:
+            self._panel.draw(image, camera, object_m)
+        else:
+            self._draw_object(image, camera, object_m)
         return image
 
     def _draw_scene(self, image: Image, camera: Camera) -> None:

@@ -68,6 +68,12 @@ class Params:
     """False: the front of the table's edge is plain, as most tables are."""
     stripe_height_m: float = positive(0.03)
     """Orange stripe on the vertical front of the table's edge. Ours."""
+    object: str = one_of("can", "can", "marker")
+    """What stands on the table: a green can, or a panel with a marker of the dictionary aruco-4x4."""
+    marker_id: int = between(0, 0, 49)
+    """The marker's number."""
+    marker_m: float = between(0.08, 0.01, 0.2)
+    """Its side."""
     object_diameter_m: float = positive(0.066)
     """A 0.33 l drink can."""
     object_height_m: float = positive(0.115)

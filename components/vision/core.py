@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from components.vision import blob, edge, hough
 from components.vision.blob import Blob
-from components.vision.colour import Thresholds
+from components.vision.colour import Mask, Thresholds
+from components.vision.marker import Detector
 from components.vision.palette import Palette
 from components.vision.params import Params
 
@@ -48,19 +49,30 @@ class Eyes:
         self._params = params
         learned = params.object_colour or params.table_colour
         self._colours = Palette(params) if learned else Thresholds(params)
+        self._marker = Detector(params.marker_dictionary, params.marker_id) if params.object == "marker" else None
         self._middle = 0.5 * (params.width_px - 1)
         self._half = 0.5 * (params.height_px - 1)
 
     def look(self, image: NDArray[np.uint8]) -> Sight:
         """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
         is_object, is_table = self._colours.masks(image)
-        thing = blob.largest(is_object, self._params.pool)
-        spot = self._spot(thing)
+        thing, spot = self._thing(image, is_object)
         if self._params.edge == "hough":
             return Sight(spot, self._hough(image, thing, spot) if thing and spot else None)
         stripes = blob.patches(is_table, self._params.pool, STRIPES if self._params.table_colour else 1)
         borders = (self._stripe(stripe, spot.u_px if spot else 0.0) for stripe in stripes)
         return Sight(spot, next((border for border in borders if border is not None), None))
+
+    def _thing(self, image: NDArray[np.uint8], is_object: Mask) -> tuple[Blob | None, Spot | None]:
+        """The object: what hides the edge, and where it is."""
+        if self._marker is None:
+            patch = blob.largest(is_object, self._params.pool)
+            return patch, self._spot(patch)
+        marker = self._marker.find(image)
+        if marker is None:
+            return None, None
+        column, row = marker.middle
+        return marker.blob, Spot(column - self._middle, row - self._half, marker.pixels)
 
     def _spot(self, patch: Blob | None) -> Spot | None:
         if patch is None or patch.pixels < self._params.object_pixels_min * self._params.scale**2:

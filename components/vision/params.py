@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from runtime.params import between, one_of, positive, ruled
+from runtime.params import ConfigurationError, between, one_of, positive, ruled
 
 COLOUR = "empty, or red, green, blue, each between 0 and 250, at least 30 apart"
 COLOUR_MAX = 250.0
 """More is overexposed."""
 CONTRAST_MIN = 30.0
 """Less between the strongest and the weakest channel is grey under some lamp."""
+
+
+class Dictionary(NamedTuple):
+    """A set of markers that OpenCV knows."""
+
+    name: str
+    """In `cv2.aruco`."""
+    markers: int
+    """They are numbered from 0."""
+
+
+DICTIONARIES: Mapping[str, Dictionary] = {
+    "aruco-4x4": Dictionary("DICT_4X4_50", 50),
+    "aruco-5x5": Dictionary("DICT_5X5_50", 50),
+    "aruco-6x6": Dictionary("DICT_6X6_50", 50),
+    "apriltag-16h5": Dictionary("DICT_APRILTAG_16H5", 30),
+    "apriltag-25h9": Dictionary("DICT_APRILTAG_25H9", 35),
+    "apriltag-36h11": Dictionary("DICT_APRILTAG_36H11", 587),
+}
+"""The fewer cells, the further away it is seen: a marker of 4x4 bits has 6x6 cells with its border, 36h11 has 8x8."""
 
 
 def _is_colour(colour: tuple[float, ...]) -> bool:
@@ -26,6 +48,12 @@ class Params:
     """Images of any other size are refused, before they are decoded."""
     height_px: int = ruled(240, "a multiple of 8 between 48 and 1440", lambda px: 48 <= px <= 1440 and px % 8 == 0)
     """As above."""
+    object: str = one_of("colour", "colour", "marker")
+    """What the object is told by: a colour of its own, or a square marker on it."""
+    marker_dictionary: str = one_of("aruco-4x4", *DICTIONARIES)
+    """Of which kind the marker is."""
+    marker_id: int = between(0, 0, 586)
+    """Its number."""
     edge: str = one_of("stripe", "stripe", "hough")
     """How the table's edge is found: by the stripe on its front, or as the first long line below the object."""
     object_colour: tuple[float, ...] = ruled((), COLOUR, _is_colour)
@@ -50,6 +78,14 @@ class Params:
     edge_length_min_px: int = positive(64)
     """Nor is a blob that is shorter than this in an image 320 wide. In the simulator 119 and more are in view; real
     photographs have straight orange things of 54."""
+
+    def __post_init__(self) -> None:
+        """Check what no single field shows."""
+        if self.marker_id >= (markers := DICTIONARIES[self.marker_dictionary].markers):
+            raise ConfigurationError(
+                f"vision.params.marker_id must be below {markers}, as many as {self.marker_dictionary} has; "
+                f"got {self.marker_id}"
+            )
 
     @property
     def pool(self) -> int:
