@@ -37,8 +37,10 @@ def corrections(system: System, findings: Iterable[Finding]) -> list[Correction]
     """The parameters that put right what was found, from those in force."""
     found = []
     for finding in findings:
+        if finding.change == Finding.NOTHING:
+            continue  # it may name no component
         spec = of_run(system, finding.component)
-        if spec is None or finding.change == Finding.NOTHING:
+        if spec is None:
             continue
         now = spec.params[finding.param]
         found.append(Correction(spec.name, finding.param, _new(finding, now)))
