@@ -14,6 +14,10 @@ Choice = Callable[[Sequence[Sample]], int]
 """All samples so far -> what the gripper does."""
 
 
+Check = Callable[[Sequence[Sample]], str]
+"""All samples so far -> why the script must end here; empty = it may go on."""
+
+
 class Action(IntEnum):
     """Numbers of `berth.GripperAction`."""
 
@@ -37,3 +41,5 @@ class Phase(NamedTuple):
     until: Until | None = None
     as_long_as: str = ""
     """Name of an earlier phase that took as many frames."""
+    check: Check | None = None
+    """Looked at when the phase is over."""

@@ -89,6 +89,8 @@ class Run:
     def _advance(self, now: Sample) -> None:
         """Go on to the phase that is not over yet."""
         while self._index < len(self.phases) and self._is_over(self.phases[self._index], now):
+            check = self.phases[self._index].check
+            self.end("" if check is None else check(self.samples))
             self._index += 1
             self._first = now
 
@@ -101,7 +103,7 @@ class Run:
         return ended or (now.time_ns - first.time_ns) * 1e-9 > phase.longest_s - 0.5 * self.params.frame_s
 
     def _told(self) -> Wish:
-        if self._index >= len(self.phases):
+        if self._index >= len(self.phases) or self.reason:
             return self._wish._replace(v_mps=0.0, omega_radps=0.0, gripper=Action.KEEP)
         phase = self.phases[self._index]
         gripper = phase.gripper if isinstance(phase.gripper, Action) else phase.gripper(self.samples)

@@ -44,3 +44,9 @@ def settled(samples: Iterable[Sample], phase: str, what: Callable[[Sample], floa
     rows = of_phase(samples, phase)
     values = [value for sample in rows[len(rows) // 2 :] if sample.visible and math.isfinite(value := what(sample))]
     return sum(values) / len(values) if values else math.nan
+
+
+def between(samples: Iterable[Sample], before: str, after: str, what: Callable[[Sample], float]) -> float:
+    """By how much a quantity grew from one rest to another; NaN if unknown."""
+    rows = list(samples)
+    return settled(rows, after, what) - settled(rows, before, what)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from components.inspector.judgement import Judgement, Verdict, has_name, scaled, unknown
 from components.inspector.ports import Params
-from components.inspector.sample import Sample, settled
+from components.inspector.sample import Sample, between, settled
 
 BASE = "components.base"
 LEAST_TURN = 0.2
@@ -31,7 +31,7 @@ def judge(samples: Sequence[Sample], params: Params, focal_px: float) -> list[Ju
     if not math.isfinite(focal_px):
         words = "not known while the head's motion is not understood"
         return [unknown(thing, words) for thing in ("turn", "heading", "drive", "odometry")]
-    astray_rad = _between(samples, "before the drive", "after the drive", lambda s: s.u_px) / focal_px
+    astray_rad = between(samples, "before the drive", "after the drive", lambda s: s.u_px) / focal_px
     if abs(astray_rad) > ASTRAY_RAD:
         words = f"told to drive, the robot turned by {math.degrees(astray_rad):.1f} deg: one wheel's motor is reversed"
         return [Judgement("drive", Verdict.WRONG, words)]
@@ -41,8 +41,8 @@ def judge(samples: Sequence[Sample], params: Params, focal_px: float) -> list[Ju
 
 def _turn(samples: Sequence[Sample], params: Params, focal_px: float) -> list[Judgement]:
     asked_rad = params.turn_rate_radps  # for one second
-    image_rad = _between(samples, "before the turn", "after the turn", lambda s: s.u_px) / focal_px
-    read_rad = _between(samples, "before the turn", "after the turn", lambda s: s.heading_rad)
+    image_rad = between(samples, "before the turn", "after the turn", lambda s: s.u_px) / focal_px
+    read_rad = between(samples, "before the turn", "after the turn", lambda s: s.heading_rad)
     if not abs(image_rad) > LEAST_TURN * asked_rad:
         words = f"told to turn by {math.degrees(asked_rad):.0f} deg, it did not move the image: no motors, or a unit?"
         return [unknown("turn", words), unknown("heading", words)]
@@ -82,8 +82,8 @@ def _roughly(thing: str, ratio: float, param: str) -> Judgement:
 def _sunk(samples: Sequence[Sample]) -> float:
     """Rows by which object and edge sank in the image."""
     rows = [
-        _between(samples, "before the drive", "after the drive", lambda s: s.v_px),
-        _between(samples, "before the drive", "after the drive", lambda s: s.edge_v_px),
+        between(samples, "before the drive", "after the drive", lambda s: s.v_px),
+        between(samples, "before the drive", "after the drive", lambda s: s.edge_v_px),
     ]
     known = [row for row in rows if math.isfinite(row)]
     return sum(known) / len(known) if known else math.nan
@@ -93,10 +93,6 @@ def _way(samples: Sequence[Sample], heading: Judgement) -> float:
     """Along the heading, by the odometry as it reads."""
     factor = abs(heading.value) if heading.verdict == Verdict.WRONG and heading.value else 1.0
     heading_rad = factor * settled(samples, "before the drive", lambda s: s.heading_rad)
-    dx_m = _between(samples, "before the drive", "after the drive", lambda s: s.x_m)
-    dy_m = _between(samples, "before the drive", "after the drive", lambda s: s.y_m)
+    dx_m = between(samples, "before the drive", "after the drive", lambda s: s.x_m)
+    dy_m = between(samples, "before the drive", "after the drive", lambda s: s.y_m)
     return dx_m * math.cos(heading_rad) + dy_m * math.sin(heading_rad)
-
-
-def _between(samples: Sequence[Sample], before: str, after: str, what: Callable[[Sample], float]) -> float:
-    return settled(samples, after, what) - settled(samples, before, what)

@@ -105,10 +105,13 @@ def test_motors_that_do_not_move_are_not_called_reversed():
     assert found.right == found.system
 
 
-def test_a_drive_that_runs_far_too_fast_is_ended_early():
-    found = inspect(robot("forward=10"), "facing")
+@pytest.mark.parametrize("wiring", ["forward=10", "forward=-10, odometry=10", "turn=10"])
+def test_a_unit_that_is_wrong_tenfold_ends_the_check_within_millimetres_or_degrees(wiring):
+    found = inspect(robot(wiring), "facing")
     assert found.result.findings == []
-    assert "far more in the image" in found.result.reason
+    assert f"base.{'turn' if 'turn' in wiring else 'speed'}_scale" in found.result.reason
+    assert found.moved_m < 0.02
+    assert found.turned_deg < 6.0
 
 
 def changed(system, run, **params):
