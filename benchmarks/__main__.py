@@ -25,6 +25,7 @@ BENCHMARKS = {
     "recorder": "what the recorder costs and loses, and what a kill -9 costs",
     "replay": "a live session of 5 minutes, every component replayed: share of equal outputs, speed",
     "relearn": "learning again from 40 robot-minutes against reading the same channels with the mcap library",
+    "report": "the report about a session of 40 robot-minutes, against reading its file",
     "fuzz_reader": "ten thousand spoiled recordings through everything that reads one",
     "fuzz_pioneer": "ten thousand spoiled byte streams through the readers of a Pioneer's line",
     "pioneer": "the learned policy through a Pioneer's serial protocol beside the direct simulation, 200 paired starts",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from cli.doing import QUIET, doing
 from runtime.params import ConfigurationError
 
 if TYPE_CHECKING:
@@ -21,14 +22,17 @@ POSTER = Annotated[Path | None, typer.Option(help="Also draw one picture of the 
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
 
 
-def report(files: FILES, output: OUTPUT = None, poster: POSTER = None, as_json: JSON = False) -> None:
+def report(
+    files: FILES, output: OUTPUT = None, poster: POSTER = None, quiet: QUIET = False, as_json: JSON = False
+) -> None:
     """Write a page: did it learn, does it dock, what went wrong. Example: berth report recordings/sim.mcap."""
-    if len(files) == 1:
-        page, found = write_report(files[0], output, poster)
-    elif len(files) == 2 and poster is None:
-        page, found = write_versus(files[0], files[1], output)
-    else:
+    if len(files) > 2 or (len(files) == 2 and poster is not None):
         raise ConfigurationError("berth report: must have one recording, or two and no --poster")
+    with doing(f"reading {' and '.join(map(str, files))}", quiet=quiet or as_json):
+        if len(files) == 1:
+            page, found = write_report(files[0], output, poster)
+        else:
+            page, found = write_versus(files[0], files[1], output)
     text = json.dumps({"report": str(page), **found}) if as_json else str(page)
     sys.stdout.write(text + "\n")
 

@@ -129,15 +129,14 @@ class FitReader:
             promise = self._open[1]
             if math.isnan(promise.ended_s) and trial.goal_reached:
                 promise.ended_s = at_s
-        if trial.mode not in _DRIVING:
+        is_new = self._open is None or trial.began_ns != self._open[0]
+        begins = is_new and trial.controller == "greedy" and trial.mode == Trial.APPROACH
+        if not (begins or (self._knows_motion and trial.mode in _DRIVING)):
             return
         sight = sight_of(self._task, percept.visible, percept.slope, percept.pan_rad, percept.tilt_rad)
-        if not sight.visible:
-            return
-        if self._knows_motion:
+        if sight.visible and self._knows_motion:
             self._states[capture_ns] = (sight.beta_rad, sight.alpha_rad, -math.log(math.tan(sight.tilt_rad)))
-        is_new = self._open is None or trial.began_ns != self._open[0]
-        if trial.controller == "greedy" and trial.mode == Trial.APPROACH and is_new:
+        if sight.visible and begins:
             self._begin(trial, sight.beta_rad, sight.alpha_rad, at_s)
 
     def _begin(self, trial: Trial, beta_rad: float, alpha_rad: float, at_s: float) -> None:

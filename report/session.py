@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -113,6 +113,7 @@ def read(file: Path) -> Session:
     return session
 
 
+_IMAGE = "foxglove.CompressedImage"
 Taker = Callable[[Logged, Any], None]
 """Takes a message and what it decodes to."""
 
@@ -144,25 +145,32 @@ class _Reader:
             tallies.add(logged)
             if remember is not None:
                 remember(logged)
+            if logged.schema == _IMAGE:
+                self._image = logged
+                continue
             kind = (logged.topic, logged.schema)
             if kind not in takers:
                 takers[kind] = tuple(self._takers(*kind))
-            if takers[kind]:
-                self._hand(logged, takers[kind])
+            if takers[kind] and (message := logged.decoded()) is not None:
+                for take in takers[kind]:
+                    take(logged, message)
         self._session.topics = tallies.topics()
+        self._session.knows_truth = any(topic.topic == self._truth for topic in self._session.topics)
+        if not self._session.knows_truth:
+            self._listen(recording)
         self._fill()
 
-    def _hand(self, logged: Logged, takers: Sequence[Taker]) -> None:
-        message = None if takers[0] in (self._take_image, self._take_policy) else logged.decoded()
-        if message is not None or takers[0] in (self._take_image, self._take_policy):
-            for take in takers:
-                take(logged, message)
+    def _listen(self, recording: Recording) -> None:
+        """Again, to what the robot itself tells."""
+        percepts = {topic.topic for topic in self._session.topics if topic.schema == "berth.Percept"}
+        for logged in recording.messages({self._trial, *percepts}):
+            message = logged.decoded()
+            if isinstance(message, Percept) or (isinstance(message, TrialMessage) and is_sane(message)):
+                self._told.take(message, logged.capture_ns)
 
     def _takers(self, topic: str, schema: str) -> Iterator[Taker]:
-        """Who wants the messages of a topic; images and policies are many and large, and decoded only where needed."""
-        if schema == "foxglove.CompressedImage":
-            yield self._take_image
-        elif schema == "berth.Policy":
+        """Who wants the messages of a topic."""
+        if schema == "berth.Policy":
             yield self._take_policy
         elif topic == self._trial and schema == "berth.Trial":
             yield self._take_trial
@@ -177,10 +185,7 @@ class _Reader:
         if self._shadow.wants(topic):
             yield self._shadow.take
 
-    def _take_image(self, logged: Logged, _: Any) -> None:
-        self._image = logged
-
-    def _take_policy(self, logged: Logged, _: Any) -> None:
+    def _take_policy(self, logged: Logged, _: Policy) -> None:
         self._policies[logged.capture_ns // 60_000_000_000] = logged
         self._fit.take_policy(logged)
 
@@ -188,7 +193,6 @@ class _Reader:
         if not is_sane(message):
             return
         self._board.take(message, logged.capture_ns)
-        self._told.take(message, logged.capture_ns)
         self._fit.take(message, logged.capture_ns)
         self._endings.take(message, logged.capture_ns)
         if self._image is not None:
@@ -200,7 +204,6 @@ class _Reader:
             self._compare(self._pairs.second(logged.capture_ns, message))
 
     def _take_percept(self, logged: Logged, message: Percept) -> None:
-        self._told.take(message, logged.capture_ns)
         self._fit.take(message, logged.capture_ns)
         self._compare(self._pairs.first(logged.capture_ns, message))
 
@@ -215,7 +218,6 @@ class _Reader:
 
     def _fill(self) -> None:
         session, scorer = self._session, self._board.scorer
-        session.knows_truth = any(topic.topic == self._truth for topic in session.topics)
         session.trials = scorer.trials if session.knows_truth else self._told.trials()
         session.collisions, session.robot_s = scorer.collisions, self._board.robot_s
         session.failed, session.incidents = self._endings.failed, self._incidents.found
