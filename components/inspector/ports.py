@@ -62,10 +62,13 @@ class Params:
     head_lag_s: float = not_negative(0.03)
     """In force, as tracker's."""
     pan_gain_p: float = between(0.9, 0.01, 1.0)
-    """In force, as tracker's, and the following ones."""
+    """In force, as tracker's."""
     pan_gain_d: float = between(0.05, 0.0, 0.5)
+    """As above."""
     tilt_gain_p: float = between(0.9, 0.01, 1.0)
+    """As above."""
     tilt_gain_d: float = between(0.05, 0.0, 0.5)
+    """As above."""
     beams_swapped: bool = False
     """In force, as base's."""
 
