@@ -40,6 +40,8 @@ class Frame(NamedTuple):
     gripper_longitudinal_m: float
     collided: bool
     holding: bool
+    dock_share: float = 0.0
+    """Forecast by the policy before the robot moved; 0 = none."""
 
 
 @dataclass
@@ -59,6 +61,8 @@ class Trial:
     docked: bool = False
     picked: bool = False
     collided: bool = False
+    dock_share: float = 0.0
+    """Probability of docking that was forecast before the robot moved; 0 = none was."""
     gripper_error_m: float = math.nan
     heading_error_rad: float = math.nan
     path: list[tuple[float, float]] = field(default_factory=list)
@@ -128,10 +132,17 @@ def _judge(trial: Trial, frame: Frame) -> None:
     trial.reached = trial.reached or frame.goal_reached
     trial.collided = trial.collided or frame.collided
     trial.picked = trial.picked or frame.holding
+    trial.dock_share = frame.dock_share or trial.dock_share
     if frame.mode == "GRASP" and abs(frame.v_mps) < _REST_MPS and math.isnan(trial.gripper_error_m):
         trial.gripper_error_m = math.hypot(frame.gripper_lateral_m, frame.gripper_longitudinal_m)
         trial.heading_error_rad = abs(wrap(frame.heading_rad))
         trial.docked = trial.gripper_error_m <= DOCKED_M and trial.heading_error_rad <= DOCKED_RAD
+
+
+def brier(trials: list[Trial]) -> tuple[float, int]:
+    """(mean square error of the forecasts, 0 = always right and certain; number of trials that had one)."""
+    told = [trial for trial in trials if trial.dock_share > 0.0]
+    return (sum((trial.dock_share - trial.docked) ** 2 for trial in told) / len(told) if told else math.nan), len(told)
 
 
 def outcomes(trials: list[Trial]) -> Iterator[tuple[str, int]]:

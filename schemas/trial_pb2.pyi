@@ -6,7 +6,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Trial(_message.Message):
-    __slots__ = ("phase", "mode", "number", "outcome", "ended", "controller", "action", "policy_version", "place", "start", "goal_reached", "began_ns", "failure", "failure_ns", "side")
+    __slots__ = ("phase", "mode", "number", "outcome", "ended", "controller", "action", "policy_version", "place", "start", "goal_reached", "began_ns", "failure", "failure_ns", "dock_share", "dock_s", "back_off_m", "side")
     class Phase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         TRAIN: _ClassVar[Trial.Phase]
@@ -85,6 +85,9 @@ class Trial(_message.Message):
     BEGAN_NS_FIELD_NUMBER: _ClassVar[int]
     FAILURE_FIELD_NUMBER: _ClassVar[int]
     FAILURE_NS_FIELD_NUMBER: _ClassVar[int]
+    DOCK_SHARE_FIELD_NUMBER: _ClassVar[int]
+    DOCK_S_FIELD_NUMBER: _ClassVar[int]
+    BACK_OFF_M_FIELD_NUMBER: _ClassVar[int]
     SIDE_FIELD_NUMBER: _ClassVar[int]
     phase: Trial.Phase
     mode: Trial.Mode
@@ -100,5 +103,8 @@ class Trial(_message.Message):
     began_ns: int
     failure: Trial.Failure
     failure_ns: int
+    dock_share: float
+    dock_s: float
+    back_off_m: float
     side: str
-    def __init__(self, phase: _Optional[_Union[Trial.Phase, str]] = ..., mode: _Optional[_Union[Trial.Mode, str]] = ..., number: _Optional[int] = ..., outcome: _Optional[_Union[Trial.Outcome, str]] = ..., ended: _Optional[int] = ..., controller: _Optional[str] = ..., action: _Optional[int] = ..., policy_version: _Optional[int] = ..., place: _Optional[bool] = ..., start: _Optional[int] = ..., goal_reached: _Optional[bool] = ..., began_ns: _Optional[int] = ..., failure: _Optional[_Union[Trial.Failure, str]] = ..., failure_ns: _Optional[int] = ..., side: _Optional[str] = ...) -> None: ...
+    def __init__(self, phase: _Optional[_Union[Trial.Phase, str]] = ..., mode: _Optional[_Union[Trial.Mode, str]] = ..., number: _Optional[int] = ..., outcome: _Optional[_Union[Trial.Outcome, str]] = ..., ended: _Optional[int] = ..., controller: _Optional[str] = ..., action: _Optional[int] = ..., policy_version: _Optional[int] = ..., place: _Optional[bool] = ..., start: _Optional[int] = ..., goal_reached: _Optional[bool] = ..., began_ns: _Optional[int] = ..., failure: _Optional[_Union[Trial.Failure, str]] = ..., failure_ns: _Optional[int] = ..., dock_share: _Optional[float] = ..., dock_s: _Optional[float] = ..., back_off_m: _Optional[float] = ..., side: _Optional[str] = ...) -> None: ...

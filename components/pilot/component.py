@@ -124,6 +124,9 @@ class Pilot:
             began_ns=now.began_ns,
             failure=Failure(now.failure).name,
             failure_ns=max(now.failure_ns, 0),
+            dock_share=now.forecast.share,
+            dock_s=now.forecast.time_s,
+            back_off_m=now.forecast.back_off_m,
             side=_side(rules, now),
         )
 

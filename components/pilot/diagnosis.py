@@ -9,7 +9,7 @@ The first rule that holds gives the name; what happened longer than `blame_s` be
 - object lost: not seen for `lost_s`; when last seen.
 - pick missed: the grasper says so; at the end.
 - model wrong: the policy drove out of the cells, too near to the table or out of time, and its value in the first cell
-  in which it acted had promised the goal (above 0); at the end.
+  in which it acted had promised the goal (above 0), or its forecast (at least 50 %); at the end.
 - timeout: out of time otherwise; at the end.
 - unreachable: out of the cells or too near to the table, and the policy had expected no better; when the trial began.
   Or, whoever drove: the linear law had asked for more than the turn limit, and got it, for `lock_s`; since then.
@@ -52,11 +52,11 @@ def watched(rules: Rules, progress: Progress, sight: Sight, heard: Heard, time_n
 
 
 def promised(progress: Progress, table: PolicyTable | None) -> Progress:
-    """Remember what the policy's value said of the first cell that it acted in."""
-    held = progress.held
+    """Remember what the policy forecast, or what its value said of the first cell that it acted in."""
+    held, share = progress.held, progress.forecast.share
     if progress.evidence.promise >= 0 or table is None or held.controller != "greedy":
         return progress
-    promise = int(table.value[held.cell] > 0.0)
+    promise = int(share >= 0.5) if share > 0.0 else int(table.value[held.cell] > 0.0)
     return replace(progress, evidence=replace(progress.evidence, promise=promise))
 
 

@@ -36,6 +36,18 @@ class Evidence:
 
 
 @dataclass(frozen=True, slots=True)
+class Forecast:
+    """What the policy expects of a trial before the robot moves (`components.pilot.forecast`)."""
+
+    share: float = between(0.0, 0.0, 1.0)
+    """Probability that it docks; 0 = nothing was forecast."""
+    time_s: float = not_negative(0.0)
+    """Until then, if it does; 0 = it hardly will."""
+    back_off_m: float = not_negative(0.0)
+    """Straight back by so much it probably would; 0 = it will already, or no such way is known."""
+
+
+@dataclass(frozen=True, slots=True)
 class Scale:
     """How far the view moves for a metre of the wheels: one over the camera's height above the object, as experienced.
 

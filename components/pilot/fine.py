@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from components.pilot.forecast import forecast
 from components.pilot.progress import Held, Phase, Progress, Step, Wish
 from components.pilot.rules import Rules
 from components.pilot.sight import Sight
@@ -31,6 +32,8 @@ def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sigh
         wish = Wish(held.v_mps, held.omega_radps, held.controller, held.action)
         return remembered(progress, held.v_mps, held.omega_radps), wish
     ahead = _ahead(rules, policy, progress, sight)
+    if progress.forecast.share == 0.0 and not progress.sent:
+        progress = replace(progress, forecast=forecast(rules, policy, _state(sight)))
     action = int(policy.act(ahead, exploring=progress.phase == Phase.TRAIN)[0])
     controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
     if action == UNKNOWN:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
-from components.pilot.evidence import Evidence, Scale
+from components.pilot.evidence import Evidence, Forecast, Scale
 from runtime.params import between, not_negative, ruled
 
 
@@ -150,6 +150,7 @@ class Progress:
     searched: bool = False
     """The robot has turned once round in search of the object, in vain."""
     evidence: Evidence = field(default_factory=Evidence)
+    forecast: Forecast = field(default_factory=Forecast)
     scale: Scale = field(default_factory=Scale)
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from components.pilot import diagnosis, reverse
 from components.pilot.choice import is_at_goal, is_off_limits, landing_policy, steer, table_of
-from components.pilot.evidence import Evidence
+from components.pilot.evidence import Evidence, Forecast
 from components.pilot.landing import has_landed, land
 from components.pilot.progress import REST, Heard, Held, Mode, Outcome, Phase, Progress, Step, Wish
 from components.pilot.rules import NS, Rules
@@ -51,6 +51,7 @@ def begin(progress: Progress, time_ns: int, number: int) -> Progress:
         turning=False,
         sent=(),
         evidence=Evidence(),
+        forecast=Forecast(),
     )
 
 

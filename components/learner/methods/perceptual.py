@@ -22,6 +22,8 @@ from docking.value_iteration import LATE_S
 
 _KIND = "perceptual learner"
 _FASTER, _FASTEST_MPS = 1.25, 2.0
+_RAMP_MPS, _RAMP_S = 0.06, 0.75
+"""After a change of speed by more a robot is slower or faster than commanded for so long: 0.2 m/s take it 0.67 s."""
 _SHOWN_TILT_SHARE = 0.5
 """The cells show the policy where cot(tilt) is halfway between the nearest and the farthest start."""
 
@@ -50,6 +52,8 @@ class PerceptualMethod:
         room_rad = (settings.room_beta_rad, settings.room_alpha_rad)
         self.learner = Perceptual(planning, limits_of(task, room_rad, docking=settings.goal == "dock"), task.actions)
         self._newest_ns = -1
+        self._speeds_mps: list[float] = []
+        """Commanded in the newest frames, this long: a ramp and one."""
         self._compile()
 
     def feed(self, frame: Frame) -> bool:
@@ -58,6 +62,8 @@ class PerceptualMethod:
         self._newest_ns = frame.capture_ns
         if gap:
             self.learner.close()
+            self._speeds_mps.clear()
+        self._speeds_mps = [*self._speeds_mps, frame.command[0]][-round(_RAMP_S / self._period_s) - 1 :]
         if frame.progress.training:
             self.learner.feed(self._seen(frame), 2 * frame.progress.ended + frame.progress.learning)
         return self.learner.advance(self.settings.layers_per_frame)
@@ -90,7 +96,7 @@ class PerceptualMethod:
     def save(self) -> bytes:
         """The whole state."""
         header, arrays = self.learner.to_plain()
-        identity = {"method": self.settings.method, "newest_ns": self._newest_ns}
+        identity = {"method": self.settings.method, "newest_ns": self._newest_ns, "speeds_mps": self._speeds_mps}
         return pack(_KIND, {**header, **identity}, arrays)
 
     def load(self, state: bytes) -> None:
@@ -105,14 +111,22 @@ class PerceptualMethod:
         newest_ns = header.get("newest_ns")
         if type(newest_ns) is not int:
             raise ValueError(f"learner state must have newest_ns; got {newest_ns!r}")
+        speeds_mps = header.get("speeds_mps")
+        if not (isinstance(speeds_mps, list) and all(type(speed) in {int, float} for speed in speeds_mps)):
+            raise ValueError(f"learner state must have speeds_mps; got {speeds_mps!r}")
         self.learner.from_plain(header, arrays)
         self._newest_ns = newest_ns
+        self._speeds_mps = [float(speed) for speed in speeds_mps]
 
     def _seen(self, frame: Frame) -> Seen | None:
-        """What is learned from; turns faster than the task's are left out, where the motors' response counts most."""
+        """What is learned from; left out is where the motors' response counts most, fast turns and changes of speed.
+
+        They would be taken for a delay.
+        """
         percept, (v, omega) = frame.percept, frame.command
         fast = not (abs(v) <= _FASTEST_MPS and abs(omega) <= _FASTER * self._turn_rate_radps)  # true for NaN
-        if not percept.visible or fast:
+        ramp = max(self._speeds_mps) - min(self._speeds_mps) > _RAMP_MPS
+        if not percept.visible or fast or ramp:
             return None
         log = -math.log(math.tan(percept.tilt_rad))
         return Seen((percept.beta_rad, percept.alpha_rad, log), (v, omega))
