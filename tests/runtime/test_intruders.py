@@ -1,4 +1,4 @@
-"""A system with keys on two hosts, and who else comes to its door."""
+"""A system with keys on three hosts, and who else comes to its door."""
 
 import time
 from collections.abc import Iterator
@@ -18,6 +18,7 @@ from runtime.launch import load
 from runtime.link import Link
 from runtime.params import ConfigurationError
 from runtime.supervise import Supervisor
+from runtime.system import System
 from runtime.wire import encoding_of, pack_stamp
 from schemas.drive_pb2 import BaseCommand
 from schemas.image_pb2 import CompressedImage
@@ -27,37 +28,50 @@ from tests.runtime.test_two_halves import Pair, follow, handled, on, pair
 
 pytestmark = pytest.mark.xdist_group("live")
 PATIENCE_S = 10.0
+HOSTS = ("robot", "laptop", "desk")
 RUN = 7
 
 
 class Scene(NamedTuple):
     robot: Supervisor
     laptop: Supervisor
-    pair: Pair
+    desk: Supervisor
+    system: System
+    endpoint: str
     keys: Path
+
+    @property
+    def all(self) -> tuple[Supervisor, ...]:
+        return self.robot, self.laptop, self.desk
 
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory) -> Iterator[Scene]:
-    """World and echo on the robot, student and witness (a tap) on the laptop, joined by TLS."""
+    """World and echo on the robot, student on the laptop, witness (a tap) on the desk; TLS, all links at the robot."""
     directory = tmp_path_factory.mktemp("guarded")
-    keys = made(directory / "keys", "robot", "laptop", "desk")
+    keys = made(directory / "keys", *HOSTS, "visitor")
     plain = pair(directory)
-    halves = [load(plain.robot.file, host=h, recording=directory / "x", keys=str(keys)) for h in ("robot", "laptop")]
-    both = Pair(*halves, free_endpoint().replace("tcp/", "tls/"))
+    file = Path(plain.robot.file)
+    head, _, tail = file.read_text(encoding="utf-8").rpartition('host = "laptop"')
+    file.write_text(f'{head}host = "desk"{tail}', encoding="utf-8")
+    robot, *others = (load(file, host=h, recording=directory / "heard.jsonl", keys=str(keys)) for h in HOSTS)
+    endpoint = free_endpoint().replace("tcp/", "tls/")
     with pytest.MonkeyPatch.context() as patch, ExitStack() as stack:
-        robot = stack.enter_context(on("robot", both, directory, patch, link=guarded(Link(both.endpoint), both.robot)))
-        link = guarded(Link("", both.endpoint), both.laptop)
-        laptop = stack.enter_context(on("laptop", both, directory, patch, link=link))
-        follow(lambda: handled(laptop, "student") > 10 and handled(robot, "echo") > 10, robot, laptop)
-        yield Scene(robot, laptop, both, keys)
+        half = guarded(Link(endpoint), robot)
+        halves = [stack.enter_context(on("robot", Pair(robot, robot, ""), directory, patch, link=half))]
+        for system in others:
+            half = guarded(Link("", endpoint), system)
+            halves.append(stack.enter_context(on(system.host, Pair(robot, system, ""), directory, patch, link=half)))
+        begun = Scene(*halves, robot, endpoint, keys)
+        follow(lambda: handled(begun.laptop, "student") > 10 and handled(begun.robot, "echo") > 10, *halves)
+        yield begun
 
 
 @contextmanager
 def intruder(scene: Scene, guard: dict[str, object]) -> Iterator[zenoh.Session]:
     """A router of somebody's own, with no rules at all, that dials the robot."""
     options = {"connect/exit_on_failure": False, "connect/timeout_ms": 0, **guard}
-    with zenoh.open(_config("router", [free_endpoint()], [scene.pair.endpoint], options)) as session:
+    with zenoh.open(_config("router", [free_endpoint()], [scene.endpoint], options)) as session:
         yield session
 
 
@@ -66,13 +80,17 @@ def with_keys(keys: Path, host: str) -> dict[str, Any]:
 
 
 def attack(scene: Scene, session: zenoh.Session) -> list[zenoh.LivelinessToken]:
-    """Announce a run as the robot's components, and speak as they do, in every way that the door asks for."""
-    realm = scene.pair.robot.realm
-    tokens = [session.liveliness().declare_token(ready_key(realm, 1, name, RUN)) for name in ("echo", "world")]
+    """Announce a run as the robot's components and speak as they do; then as their own runs, which a recorder hears."""
+    realm = scene.system.realm
+    tokens = [
+        session.liveliness().declare_token(ready_key(realm, 1, name, RUN)) for name in ("echo", "world", "nobody")
+    ]
     for sequence in range(20):
         for key, message in (("echo/drive", BaseCommand(v_mps=1.0)), ("world/image", CompressedImage(format="none"))):
-            stamp, encoding = pack_stamp(RUN, sequence, 0), encoding_of(type(message))
-            session.put(f"{realm}/{key}", message.SerializeToString(), attachment=stamp, encoding=encoding)
+            (own,) = scene.robot._presence.runs(1, key.partition("/")[0])
+            for run in (RUN, own):
+                stamp, encoding = pack_stamp(run, 10**6 + sequence, 0), encoding_of(type(message))
+                session.put(f"{realm}/{key}", message.SerializeToString(), attachment=stamp, encoding=encoding)
         time.sleep(0.005)
     return tokens
 
@@ -80,10 +98,9 @@ def attack(scene: Scene, session: zenoh.Session) -> list[zenoh.LivelinessToken]:
 def goes_on(scene: Scene) -> None:
     """Frames are answered as before, and nobody has heard anything that had to be refused."""
     before = handled(scene.robot, "echo")
-    follow(lambda: handled(scene.robot, "echo") > before + 6, scene.robot, scene.laptop)
-    statuses = (*scene.robot.statuses.values(), *scene.laptop.statuses.values())
-    assert {status.malformed for status in statuses} == {0}
-    assert RUN not in scene.robot._presence.runs(1, "echo") | scene.laptop._presence.runs(1, "echo")
+    follow(lambda: handled(scene.robot, "echo") > before + 6, *scene.all)
+    assert [half.refused + half.lost for half in scene.all] == [0, 0, 0]
+    assert not any(half._presence.is_announced(1, "", RUN) for half in scene.all)
 
 
 def hears(session: zenoh.Session, realm: str) -> list[str]:
@@ -101,61 +118,73 @@ def linked(session: zenoh.Session) -> bool:
 
 def test_a_system_with_keys_works_as_one_without(scene):
     goes_on(scene)
-    assert scene.laptop.lost == scene.robot.lost == 0
+    assert [half.lost for half in scene.all] == [0, 0, 0]
+
+
+def test_a_recorder_on_a_third_machine_hears_the_second_through_the_first(scene):
+    """`student/word` is said on the laptop; the desk is linked with the robot alone."""
+    assert [link.auth_identifier for link in links(scene.desk) if link.auth_identifier] == ["robot"]
+    file = Path(load(scene.system.file, recording=Path("x")).file).parent / "heard.jsonl"
+    assert wait_for(lambda: '"student/word"' in file.read_text(encoding="utf-8"), PATIENCE_S)
 
 
 def test_the_link_is_tls_and_everything_else_is_loopback(scene):
-    links = list(scene.robot._meeting._session.info.links())
-    assert {link.auth_identifier for link in links} == {None, "laptop"}
-    assert {str(link.src).partition("/")[0] for link in links if link.auth_identifier} == {"tls"}
+    found = {(link.auth_identifier, str(link.src).partition("/")[0]) for link in links(scene.robot)}
+    assert found == {(None, "tcp"), ("laptop", "tls"), ("desk", "tls")}
+    assert all(str(link.src).startswith("tcp/127.0.0.1:") for link in links(scene.robot) if not link.auth_identifier)
+
+
+def links(half: Supervisor) -> list[zenoh.Link]:
+    return list(half._meeting._session.info.links())
 
 
 def test_without_a_valid_certificate_of_ours_nobody_gets_a_link(scene, tmp_path):
     """A laptop without any, one of another authority that trusts ours, one of ours that has expired; and one good."""
-    good = with_keys(scene.keys, "desk")
+    good = with_keys(scene.keys, "visitor")
     bare = {k: v for k, v in good["transport/link/tls"].items() if not k.startswith("connect_")}
     foreign = with_keys(made(tmp_path / "foreign", "laptop"), "laptop")
     foreign["transport/link/tls"]["root_ca_certificate"] = str(scene.keys / "authority.pem")
     Authority.read(scene.keys).admit("laptop", tmp_path / "laptop", 1, datetime.now(UTC) - timedelta(days=5))
     attempts = [{"transport/link/tls": {**bare, "enable_mtls": False}}, foreign, with_keys(tmp_path, "laptop"), good]
     with ExitStack() as stack:
-        *bad, desk = [stack.enter_context(intruder(scene, options)) for options in attempts]
-        heard = [hears(session, scene.pair.robot.realm) for session in bad]
-        assert wait_for(lambda: linked(desk), PATIENCE_S)
+        *bad, visitor = [stack.enter_context(intruder(scene, options)) for options in attempts]
+        heard = [hears(session, scene.system.realm) for session in bad]
+        assert wait_for(lambda: linked(visitor), PATIENCE_S)
         goes_on(scene)
         assert [linked(session) for session in bad] == [False] * 3
         assert heard == [[]] * 3
 
 
 def test_a_certificate_that_the_launch_file_does_not_name_is_noted_and_neither_hears_nor_speaks(scene):
-    with intruder(scene, with_keys(scene.keys, "desk")) as session:
-        heard = hears(session, scene.pair.robot.realm)
+    with intruder(scene, with_keys(scene.keys, "visitor")) as session:
+        heard = hears(session, scene.system.realm)
         assert wait_for(lambda: linked(session), PATIENCE_S)
         goes_on(scene)
         assert heard == []
         tokens = attack(scene, session)
         goes_on(scene)
-        assert len(tokens) == 2
+        assert len(tokens) == 3
     log = Path(scene.robot.run.directory) / "supervisor.log"
     assert wait_for(lambda: "has a key and no part in this system" in log.read_text(encoding="utf-8"), PATIENCE_S)
-    assert "desk at tls/127.0.0.1:" in log.read_text(encoding="utf-8")
+    assert "visitor at tls/127.0.0.1:" in log.read_text(encoding="utf-8")
 
 
-def test_the_laptop_itself_can_not_speak_for_the_robot(scene):
+@pytest.mark.parametrize("host", ["laptop", "desk"])
+def test_a_host_of_the_system_can_not_speak_for_another(scene, host):
     """Its own router lets nothing out; so this one has none of its rules, but its keys."""
-    with intruder(scene, with_keys(scene.keys, "laptop")) as session:
+    with intruder(scene, with_keys(scene.keys, host)) as session:
         assert wait_for(lambda: linked(session), PATIENCE_S)
         tokens = attack(scene, session)
         goes_on(scene)
-        assert len(tokens) == 2
+        assert len(tokens) == 3
 
 
 def test_a_laptop_with_foreign_keys_is_told_so_in_one_line_before_anything_starts(scene, tmp_path):
     foreign = load(
-        scene.pair.robot.file, host="laptop", keys=str(made(tmp_path / "foreign", "laptop")), recording=tmp_path / "x"
+        scene.system.file, host="laptop", keys=str(made(tmp_path / "foreign", "laptop")), recording=tmp_path / "x"
     )
     with pytest.raises(ConfigurationError, match=r"--connect tls/.*: the host there must have keys of .*authority.pem"):
-        guarded(Link("", scene.pair.endpoint), foreign)
+        guarded(Link("", scene.endpoint), foreign)
 
 
 def test_a_laptop_whose_keys_the_robot_refuses_is_told_so_in_one_line(scene, tmp_path):
@@ -163,6 +192,6 @@ def test_a_laptop_whose_keys_the_robot_refuses_is_told_so_in_one_line(scene, tmp
     (foreign / "laptop" / "authority.pem").write_bytes(
         (scene.keys / "authority.pem").read_bytes() + (foreign / "authority.pem").read_bytes()
     )
-    laptop = load(scene.pair.robot.file, host="laptop", keys=str(foreign), recording=tmp_path / "x")
+    laptop = load(scene.system.file, host="laptop", keys=str(foreign), recording=tmp_path / "x")
     with pytest.raises(ConfigurationError, match=r"the host there refuses .*certificate.pem; are its keys of the same"):
-        guarded(Link("", scene.pair.endpoint), laptop)
+        guarded(Link("", scene.endpoint), laptop)
