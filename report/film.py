@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from docking.score import Trial
+from report.charts import kind_of
 from report.comparison import Comparison
 from report.overlay import camera_picture
 from report.pictures import COLOURS, STYLE, draw_table
@@ -118,7 +119,7 @@ class Stage:
         ended = self._reel.trials[: cue.moment.trials]
         kept = [trial for trial in ended if trial.phase == frame.phase][-PATHS:]
         self._paths.set_segments([_above(trial.path) for trial in kept])
-        self._paths.set_color([COLOURS[_outcome(trial)] for trial in kept])
+        self._paths.set_color([COLOURS[kind_of(trial)] for trial in kept])
         running = self._reel.trials[cue.moment.trials] if cue.moment.trials < len(self._reel.trials) else None
         path = _above(_driven(running, frame.time_s)) if running is not None else []
         self._path.set_data(*(zip(*path, strict=True) if path else ((), ())))
@@ -195,10 +196,6 @@ def _driven(trial: Trial, time_s: float) -> Sequence[tuple[float, float]]:
     """The part of a trial's path that lies behind the robot."""
     share = (time_s - trial.began_s) / max(trial.duration_s, 1e-9)
     return trial.path[: max(0, math.ceil(share * len(trial.path)))]
-
-
-def _outcome(trial: Trial) -> str:
-    return "docked" if trial.docked else "reached" if trial.reached else "failed"
 
 
 def _cells(policy: Policy) -> Rgb:
