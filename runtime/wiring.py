@@ -54,12 +54,13 @@ def check_wiring(system: System) -> None:
 
     Raises:
         ConfigurationError: unknown port, an input wired to nothing, an unwired input, schemas that differ, a wire to
-            ground truth, a cycle without delay, camera and base on different hosts.
+            ground truth, a device that can not do the task, a cycle without delay, camera and base on different hosts.
     """
     sources = publishers(system)
     for spec in system.components:
         _check_inputs(system, spec, sources)
     _check_session_keys(system, sources)
+    _check_devices(system)
     _check_cycles(system)
     _check_hosts(system)
 
@@ -96,6 +97,19 @@ def _check_session_keys(system: System, sources: dict[str, tuple[str, str]]) -> 
         key = getattr(system, name)
         if key and key not in sources:
             raise ConfigurationError(f"{system.file}: session.{name} must be published by some component; got {key!r}")
+
+
+def _check_devices(system: System) -> None:
+    """A component may know what its device can not do: `check_device(device, params, task, where)` of its ports.
+
+    Raises:
+        ConfigurationError: the task needs more.
+    """
+    task = next((spec.params["task"] for spec in system.components if "task" in spec.params), None)
+    for spec in system.components:
+        check = getattr(ports_of(spec.run), "check_device", None)
+        if check is not None and spec.device and task is not None:
+            check(spec.device, spec.params, task, f"{system.file}: {spec.name}")
 
 
 def _check_cycles(system: System) -> None:

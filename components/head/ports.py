@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from docking.angles import DEG
 from runtime.contract import DeviceKind, Input, Kind, Port
-from runtime.params import between, positive, ruled, scale
+from runtime.params import ConfigurationError, between, positive, ruled, scale
 from schemas.head_pb2 import HeadCommand, HeadState
 
 
@@ -56,11 +57,45 @@ class PanTilt:
     """Fastest tilt. VC-C4: 74 deg/s, EVI-D30: 50."""
 
 
+_TILTS = {"canon-vc-c4": (-30.0, 88.0), "sony-evi-d30": (-25.0, 25.0)}
+"""Degrees, downwards, of a camera that hangs: its own range upwards (`canon.TILT`, `visca.TILT`)."""
 DEVICES: Mapping[str, DeviceKind | None] = {
     "simulator": None,
     "canon-vc-c4": DeviceKind("components.head.devices.pan_tilt:CanonVcC4", PanTilt),
     "sony-evi-d30": DeviceKind("components.head.devices.pan_tilt:SonyEviD30", PanTilt),
 }
+
+
+def check_device(device: Mapping[str, Any], params: Mapping[str, Any], task: Mapping[str, Any], where: str) -> None:
+    """Refuse a camera that can not look where the task wants it to.
+
+    Args:
+        device: the launch file's table.
+        params: of the component.
+        task: of the system.
+        where: begins the error.
+
+    Raises:
+        ConfigurationError: the object is below the camera's range at the pick-up, or above it at the starts.
+    """
+    if device["kind"] not in _TILTS:
+        return
+    low, high = _TILTS[device["kind"]]
+    if not device.get("inverted", False):
+        low, high = -high, -low
+    low_rad, high_rad = max(low * DEG, params["tilt_low_rad"]), min(high * DEG, params["tilt_high_rad"])
+    mount = "hanging" if device.get("inverted", False) else "upright"
+    for name, is_reached in (
+        ("goal_tilt_rad", task["goal_tilt_rad"] <= high_rad),
+        ("start_tilt_min_rad", task["start_tilt_min_rad"] >= low_rad),
+    ):
+        if not is_reached:
+            raise ConfigurationError(
+                f"{where}.device must reach task.{name}, {task[name] / DEG:.1f} deg; {device['kind']}, {mount}, tilts "
+                f"from {low_rad / DEG:.1f} to {high_rad / DEG:.1f}"
+            )
+
+
 INPUTS: Mapping[str, Input] = {
     "aim": Port(HeadCommand, Kind.COMMAND, hz=8, per_frame=True),
     "device": Port(HeadState, Kind.STATE, hz=8, per_frame=True),

@@ -1,4 +1,4 @@
-"""The simulator with a serial line at 9600 baud between base, head and the robot. Deterministic: no thread, no clock."""
+"""The simulator with a serial line at 9600 baud between it and base and head. Deterministic: no thread, no clock."""
 
 import math
 
