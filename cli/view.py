@@ -9,6 +9,7 @@ import time
 import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -28,6 +29,7 @@ PORT = Annotated[int | None, typer.Option(help="Of --web (9090) or --foxglove (8
 REALM = Annotated[str, typer.Option(help="Which system, if more than one runs.")]
 HZ = Annotated[float, typer.Option(help="Live: most camera images a second.", min=0.1, max=100.0)]
 MEMORY = Annotated[str, typer.Option(help="Most that the viewer keeps; the oldest goes first.")]
+END = Annotated[bool, typer.Option("--at-end", help="Open a recording at its end instead of at its beginning.")]
 OPEN = Annotated[bool, typer.Option("--open/--no-open", help="With --web: open the browser.")]
 _SIZE = re.compile(r"[1-9][0-9]{0,4}(MB|GB|%)")
 _POLL_S = 0.1
@@ -43,80 +45,98 @@ def view(
     realm: REALM = "",
     hz: HZ = 8.0,
     memory_limit: MEMORY = "1GB",
+    at_end: END = False,
     open_browser: OPEN = True,
 ) -> None:
     """Watch a running system, or a recording with a time line. Example: berth view recordings/sim.mcap --web."""
-    _check(file, web, foxglove, save, layout, port, realm, memory_limit)
+    wish = Wish(file, web, foxglove, save, layout, port, realm, memory_limit, hz, at_end, open_browser)
+    _check(wish)
     run = None if file is not None else find(realm)
     asked: list[str] = []
     with on_signal(lambda: asked.append("interrupted")):
-        if foxglove:
-            _in_foxglove(file, run, 8765 if port is None else port, layout, hz, lambda: bool(asked))
-        else:
-            _in_rerun(file, run, save, port, hz, memory_limit, lambda: bool(asked), web=web, open_browser=open_browser)
+        (_in_foxglove if foxglove else _in_rerun)(wish, run, lambda: bool(asked))
 
 
-def _check(
-    file: Path | None,
-    web: bool,
-    foxglove: bool,
-    save: Path | None,
-    layout: Path | None,
-    port: int | None,
-    realm: str,
-    memory_limit: str,
-) -> None:
-    if web + foxglove + (save is not None) > 1:
+@dataclass(frozen=True)
+class Wish:
+    """What a person has asked for."""
+
+    file: Path | None
+    web: bool
+    foxglove: bool
+    save: Path | None
+    layout: Path | None
+    port: int | None
+    realm: str
+    memory_limit: str
+    hz: float
+    at_end: bool
+    open_browser: bool
+
+
+def _check(wish: Wish) -> None:
+    if wish.web + wish.foxglove + (wish.save is not None) > 1:
         raise ConfigurationError("--web, --foxglove and --save: only one of them")
-    if file is not None and realm:
+    if wish.file is not None and wish.realm:
         raise ConfigurationError("--realm must stand without a file")
-    if layout is not None and not foxglove:
+    if wish.file is None and wish.at_end:
+        raise ConfigurationError("--at-end must stand with a file")
+    if wish.layout is not None and not wish.foxglove:
         raise ConfigurationError("--layout must stand with --foxglove")
-    if port is not None and not (web or foxglove):
+    if wish.port is not None and not (wish.web or wish.foxglove):
         raise ConfigurationError("--port must stand with --web or --foxglove")
-    if not _SIZE.fullmatch(memory_limit):
-        raise ConfigurationError(f"--memory-limit must be like 500MB, 2GB or 25%; got {memory_limit!r}")
-    if save is not None and save.exists():
-        raise ConfigurationError(f"--save {save}: must not exist yet")
-    module = "foxglove" if foxglove else "rerun"
+    if not _SIZE.fullmatch(wish.memory_limit):
+        raise ConfigurationError(f"--memory-limit must be like 500MB, 2GB or 25%; got {wish.memory_limit!r}")
+    module = "foxglove" if wish.foxglove else "rerun"
     if importlib.util.find_spec(module) is None:
         raise ConfigurationError(f"berth view needs {module}; `make setup-view` brings it")
 
 
-def _in_rerun(
-    file: Path | None,
-    run: Run | None,
-    save: Path | None,
-    port: int | None,
-    hz: float,
-    memory_limit: str,
-    is_asked: Callable[[], bool],
-    *,
-    web: bool,
-    open_browser: bool,
-) -> None:
+def _in_rerun(wish: Wish, run: Run | None, is_asked: Callable[[], bool]) -> None:
     from viewer import live, recorded, rerun_session  # noqa: PLC0415  (a second, and only here)
 
-    where: Path | Literal["web", "window"] = save or ("web" if web else "window")
-    found = recorded.opened(file) if file is not None else None
-    name = str(file or (run.realm if run is not None else ""))
-    with rerun_session.opened(where, name, memory_limit, port=9090 if port is None else port, live=run is not None) as (
-        sink,
-        url,
-        is_closed,
-    ):
-        if url:
-            sys.stderr.write(f"showing {name} at {url} ; Ctrl-C ends it\n")
-            if open_browser:
-                webbrowser.open(url)
+    where: Path | Literal["web", "window"] = wish.save or ("web" if wish.web else "window")
+    found = recorded.opened(wish.file) if wish.file is not None else None
+    port, follow, name = (
+        wish.port or (9090 if wish.port is None else 0),
+        run is not None or wish.at_end,
+        _name(wish, run),
+    )
+    with rerun_session.opened(where, name, wish.memory_limit, port=port, follow=follow) as (sink, url, is_closed):
+        _invite(url, name, open_browser=wish.open_browser)
+
+        def is_over() -> bool:
+            return is_asked() or is_closed()
+
         if found is not None:
             with _told(name) as told:
                 recorded.show(*found, sink, told)
         elif run is not None:
-            live.follow(run, sink, hz, lambda: is_asked() or is_closed())
-            sys.stderr.write("" if is_asked() or is_closed() else "the system has ended\n")
-        while save is None and not (is_asked() or is_closed()):
+            live.follow(run, sink, wish.hz, is_over)
+            sys.stderr.write("" if is_over() else "the system has ended\n")
+        while wish.save is None and not is_over():
             time.sleep(_POLL_S)
+
+
+def _name(wish: Wish, run: Run | None) -> str:
+    return run.realm if run is not None else str(wish.file)
+
+
+def _invite(url: str, name: str, *, open_browser: bool) -> None:
+    if url:
+        sys.stderr.write(f"showing {name} at {url} ; Ctrl-C ends it\n")
+        if open_browser:
+            webbrowser.open(url)
+
+
+def _in_foxglove(wish: Wish, run: Run | None, is_asked: Callable[[], bool]) -> None:
+    from viewer import foxglove_layout, foxglove_session  # noqa: PLC0415
+
+    with foxglove_session.opened_socket(wish.file, 8765 if wish.port is None else wish.port) as session:
+        if wish.layout is not None:
+            foxglove_layout.write(wish.layout)
+        sys.stderr.write(f"showing {_name(wish, run)} at {session.url} ; Ctrl-C ends it\n")
+        session.run(run, wish.hz, is_asked)
 
 
 @contextmanager
@@ -125,17 +145,3 @@ def _told(file: str) -> Iterator[Callable[[float], None]]:
     console = Console(stderr=True)
     with console.status(f"reading {file}") as status:
         yield lambda second: status.update(f"reading {file}: {second / 60:.1f} robot minutes")
-
-
-def _in_foxglove(
-    file: Path | None, run: Run | None, port: int, layout: Path | None, hz: float, is_asked: Callable[[], bool]
-) -> None:
-    from viewer import foxglove_layout, foxglove_session  # noqa: PLC0415
-
-    with foxglove_session.opened_socket(file, port) as session:
-        if layout is not None:
-            foxglove_layout.write(layout)
-        sys.stderr.write(
-            f"showing {file or (run.realm if run is not None else '')} at {session.url} ; Ctrl-C ends it\n"
-        )
-        session.run(run, hz, is_asked)

@@ -54,7 +54,7 @@ class Browser:
         """One command of the page; its result."""
         return self.ask(method, **params)
 
-    def ask(self, method: str, *, deadline_s: float = 60.0, **params) -> dict:
+    def ask(self, method: str, *, deadline_s: float = 240.0, **params) -> dict:
         self._number += 1
         words = {"id": self._number, "method": method, "params": params}
         if self._session is not None:

@@ -94,6 +94,24 @@ def test_nothing_imports_the_command(file):
     assert not {m for m in imports(file) if m == "cli" or m.startswith("cli.")}
 
 
+def test_only_the_command_view_knows_the_viewers():
+    foreign = {"rerun", "rerun_cli", "rerun_bindings", "foxglove"}
+    for file in sources("components", "docking", "runtime", "schemas", "report", "experiments", "cli"):
+        if any(word in file.read_text(encoding="utf-8") for word in ("rerun", "foxglove", "viewer")):
+            assert not {m for m in imports(file) if is_below(m, foreign)}, file
+            assert file == ROOT / "cli" / "view.py" or not {m for m in imports(file) if is_below(m, {"viewer"})}, file
+
+
+def test_the_core_of_a_viewer_knows_no_viewer_and_touches_nothing():
+    shells = {"front", "live", "loopback", "program", "recorded", "reel"}
+    for file in sources("viewer"):
+        translates = file.stem.startswith(("rerun_", "foxglove_"))
+        mine = {m for m in imports(file) if is_below(m, {"rerun", "foxglove", "rerun_cli"})}
+        assert translates or file.stem == "program" or not mine, file
+        if not translates and file.stem not in shells:
+            assert not {m for m in imports(file) if m.split(".")[0] in OUTSIDE_WORLD}, file
+
+
 def test_no_component_reads_the_truth():
     readers = [file for file in sources("components") if "schemas.truth_pb2" in set(imports(file))]
     assert {component_of(file) for file in readers} <= {"simulator"}

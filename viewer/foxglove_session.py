@@ -26,7 +26,7 @@ from runtime.recording import Recording
 from runtime.runfile import Run
 from viewer.foxglove_sink import FoxgloveSink
 from viewer.live import follow
-from viewer.program import HOST
+from viewer.loopback import HOST
 from viewer.recorded import opened, span_ns
 from viewer.reel import Reel
 

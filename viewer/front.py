@@ -16,7 +16,7 @@ from typing import Any, Self
 from urllib.parse import quote, urlsplit
 
 from runtime.params import ConfigurationError
-from viewer.program import HOST
+from viewer.loopback import HOST
 
 POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "

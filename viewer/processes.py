@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field
 
 from schemas.session_pb2 import Status
 from viewer.shown import Number, Remark, Shown, Word
@@ -17,9 +18,9 @@ _HELD = 64
 class _Process:
     run: int
     status: Status
-    said: int = 1
-    """Words so far, of all its runs."""
     starts: int = 1
+    others: Counter[str] = field(default_factory=Counter)
+    """Words of every other process since this one's last."""
     word: str = ""
 
 
@@ -47,16 +48,18 @@ class Processes:
         if process is None:
             if len(self._processes) >= _HELD:
                 return []
-            process = self._processes[name] = _Process(run, message, said=self._least())
+            process = self._processes[name] = _Process(run, message)
         shown = self._noted(name, process, message, time_ns)
         if run != process.run:
             process.starts += 1
             shown.append(Shown("log/processes", time_ns, Remark(f"{name} was started again", is_bad=True)))
-        process.run, process.status, process.said = run, message, process.said + 1
+        process.run, process.status = run, message
+        for other, each in self._processes.items():
+            if other == name:
+                each.others.clear()
+            else:
+                each.others[name] += 1
         return shown + self._lanes(time_ns)
-
-    def _least(self) -> int:
-        return max((process.said for process in self._processes.values()), default=0)
 
     def _noted(self, name: str, process: _Process, message: Status, time_ns: int) -> list[Shown]:
         if not message.note or (message.note == process.status.note and process.status is not message):
@@ -75,8 +78,8 @@ class Processes:
 
     def state(self, name: str) -> str:
         """Running, or silent: all others have gone on talking."""
-        others = [process.said for other, process in self._processes.items() if other != name]
-        return "silent" if others and min(others) >= self._processes[name].said + _SILENT else "running"
+        since = [self._processes[name].others[other] for other in self._processes if other != name]
+        return "silent" if since and min(since) >= _SILENT else "running"
 
     def table(self) -> str:
         """As Markdown."""

@@ -20,8 +20,8 @@ from typing import Self
 import rerun_cli  # type: ignore[import-untyped]
 
 from runtime.params import ConfigurationError
+from viewer.loopback import HOST, free_port
 
-HOST = "127.0.0.1"
 _READY_S = 30.0
 _POLL_S = 0.02
 _GRACE_S = 3.0
@@ -123,13 +123,6 @@ def served(memory_limit: str) -> tuple[Program, int]:
     """What the viewer in a browser is made of and reads from: (program, port of its pages)."""
     pages = free_port()
     return Program(["--serve-web", f"--web-viewer-port={pages}"], memory_limit), pages
-
-
-def free_port() -> int:
-    """A port that nobody listens on just now."""
-    with socket.socket() as probe:
-        probe.bind((HOST, 0))
-        return int(probe.getsockname()[1])
 
 
 def _program() -> Path:

@@ -12,11 +12,11 @@ _WINDOW_S = 40.0
 """Of the fast plots."""
 
 
-def layout(*, live: bool, trails: tuple[str, ...] = ("plan/robot_trail", "plan/belief_trail")) -> rrb.Blueprint:
+def layout(*, follow: bool, trails: tuple[str, ...] = ("plan/robot_trail", "plan/belief_trail")) -> rrb.Blueprint:
     """Camera and plan large; what is learned beside them; the plots, the processes and the log below.
 
     Args:
-        live: follow the newest moment; else stand at the beginning, ready to play.
+        follow: the newest moment; else begin at the beginning.
         trails: entities that fade.
     """
     return rrb.Blueprint(
@@ -27,7 +27,7 @@ def layout(*, live: bool, trails: tuple[str, ...] = ("plan/robot_trail", "plan/b
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following" if live else "playing"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following" if follow else "playing"),
         auto_layout=False,
         auto_views=False,
     )
@@ -44,7 +44,7 @@ def _plan(trails: tuple[str, ...]) -> rrb.View:
         origin="plan",
         name="from above",
         overrides={trail: [rr.LineStrips2D.from_fields(), rrb.VisibleTimeRanges([fading])] for trail in trails},
-        visual_bounds=rrb.VisualBounds2D(x_range=[-1.6, 1.6], y_range=[-0.6, 2.4]),
+        visual_bounds=rrb.VisualBounds2D(x_range=[-1.6, 1.6], y_range=[-0.5, 2.3]),
     )
 
 
@@ -71,11 +71,15 @@ def _fast_plots() -> rrb.Container:
 
 
 def _slow_plots() -> rrb.Container:
+    whole = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.Independent)
     return rrb.Tabs(
         rrb.TimeSeriesView(
-            origin="learning", name="learning curve", axis_y=rrb.ScalarAxis(range=(-3.0, 103.0), zoom_lock=True)
+            origin="learning",
+            name="learning curve",
+            axis_x=whole,
+            axis_y=rrb.ScalarAxis(range=(-3.0, 103.0), zoom_lock=True),
         ),
-        rrb.TimeSeriesView(origin="policy_size", name="policy size"),
+        rrb.TimeSeriesView(origin="policy_size", name="policy size", axis_x=whole),
         rrb.StateTimelineView(origin="/", contents=["+ pilot/**", "+ drive/commander", "+ processes/*"], name="states"),
     )
 

@@ -20,7 +20,7 @@ _APPLICATION = "berth"
 
 @contextmanager
 def opened(
-    where: Path | Literal["web", "window"], name: str, memory_limit: str, *, port: int, live: bool
+    where: Path | Literal["web", "window"], name: str, memory_limit: str, *, port: int, follow: bool
 ) -> Iterator[tuple[RerunSink, str, Callable[[], bool]]]:
     """A viewer that is ready to show a session.
 
@@ -29,7 +29,7 @@ def opened(
         name: of the session, shown there.
         memory_limit: most that the viewer keeps, in Rerun's words.
         port: of the web page.
-        live: whether the session goes on.
+        follow: show the newest moment; else begin at the beginning.
 
     Yields:
         The sink; the page's address, empty if there is none; and whether the viewer was closed.
@@ -39,29 +39,29 @@ def opened(
     """
     recording = rr.RecordingStream(_APPLICATION)
     if isinstance(where, Path):
-        _save(recording, where, live=live)
+        _save(recording, where, follow=follow)
         yield from _shown(recording, name, "", lambda: False)
     elif where == "window":
         with native(memory_limit) as program:
-            _connect(recording, program, live=live)
+            _connect(recording, program, follow=follow)
             yield from _shown(recording, name, "", lambda: program.is_over)
     else:
         program, pages = served(memory_limit)
         with program, Front(port, pages, program.port) as front:
-            _connect(recording, program, live=live)
+            _connect(recording, program, follow=follow)
             yield from _shown(recording, name, front.url, lambda: program.is_over)
 
 
-def _save(recording: rr.RecordingStream, file: Path, *, live: bool) -> None:
+def _save(recording: rr.RecordingStream, file: Path, *, follow: bool) -> None:
     try:
         file.open("xb").close()
     except OSError as error:
         raise ConfigurationError(f"--save {file}: can not be made: {error.strerror}") from None
-    recording.save(file, default_blueprint=layout(live=live))
+    recording.save(file, default_blueprint=layout(follow=follow))
 
 
-def _connect(recording: rr.RecordingStream, program: Program, *, live: bool) -> None:
-    recording.connect_grpc(program.url, default_blueprint=layout(live=live))
+def _connect(recording: rr.RecordingStream, program: Program, *, follow: bool) -> None:
+    recording.connect_grpc(program.url, default_blueprint=layout(follow=follow))
 
 
 def _shown(

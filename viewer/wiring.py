@@ -25,7 +25,8 @@ class Wiring:
 
     def __init__(self, launch: Mapping[str, Any]) -> None:
         """Read a resolved launch file of any release: nothing is taken for granted."""
-        self._keys = {TRIAL: launch.get("trial"), TRUTH: launch.get("truth")}
+        told = {TRIAL: launch.get("trial"), TRUTH: launch.get("truth")}
+        self._keys = {schema: key for schema, key in told.items() if isinstance(key, str) and key}
         for inputs in _inputs(launch):
             for port, schema in _PORTS.items():
                 if isinstance(inputs.get(port), str):
@@ -37,9 +38,7 @@ class Wiring:
             return True
         if schema not in SCHEMAS:
             return False
-        if not self._keys.get(schema):
-            self._keys[schema] = topic
-        return self._keys[schema] == topic
+        return self._keys.setdefault(schema, topic) == topic
 
 
 def _inputs(launch: Mapping[str, Any]) -> list[Mapping[str, Any]]:
