@@ -31,6 +31,7 @@ BENCHMARKS = {
     "pioneer": "the learned policy through a Pioneer's serial protocol beside the direct simulation, 200 paired starts",
     "hardware": "wrong signs, units, beams and latencies: found and put right, by small motions; false alarms",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
+    "minutes_live": "learned live in 5 robot-minutes, one speed to reverse: docked of 500 paired starts, forecasts",
     "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts",
 }
 """Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
