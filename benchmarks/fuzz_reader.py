@@ -77,7 +77,7 @@ def _read(directory: Path, number: int) -> None:
         logged.decoded()
     if number % 5 == 0:
         replay(recording, REPLAYED[number // 5 % len(REPLAYED)])
-    numbers(read(recording.file), recording.topics())
+    numbers(read(recording.file))
     Examination(recording).run()
     mend(recording, mended)
 

@@ -16,8 +16,7 @@ from cli.exit_codes import GOOD, LOSSY
 from docking.score import outcomes
 from report.failures import counted
 from report.session import Session, read
-from runtime.mcap_items import Fault
-from runtime.recording import Recording, Topic
+from runtime.recording import Topic
 
 _COMPLETE = "complete"
 _WIDTH = 140
@@ -29,23 +28,25 @@ JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 def info(file: FILE, quiet: QUIET = False, as_json: JSON = False) -> None:
     """Describe a recording; exit code 3 if something is missing. Example: berth info recordings/sim.mcap."""
     with doing(f"reading {file}", quiet=quiet or as_json):
-        session, topics = read(file), Recording(file).topics()
-        found = numbers(session, topics)
+        session = read(file)
+        found = numbers(session)
     if as_json:
         failed = [failure.table() for failure in session.failed]
-        sys.stdout.write(json.dumps({**found, "failed": failed, "topics": [vars(topic) for topic in topics]}) + "\n")
+        sys.stdout.write(
+            json.dumps({**found, "failed": failed, "topics": [vars(topic) for topic in session.topics]}) + "\n"
+        )
     else:
-        _print(found, topics)
+        _print(found, session.topics)
     raise typer.Exit(GOOD if found["state"] == _COMPLETE else LOSSY)
 
 
-def numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
+def numbers(session: Session) -> dict[str, object]:
     """What is told of a session, by name."""
     counts = dict(outcomes(session.trials))
     succeeded = sum(trial.reached or trial.picked for trial in session.trials)
     return {
         "file": str(session.file),
-        "state": _state(session, topics),
+        "state": _state(session),
         "robot_s": round(session.robot_s, 3),
         "robot_minutes": round(session.robot_s / 60, 2),
         "trials": len(session.trials),
@@ -61,15 +62,12 @@ def numbers(session: Session, topics: list[Topic]) -> dict[str, object]:
     }
 
 
-def _state(session: Session, topics: list[Topic]) -> str:
+def _state(session: Session) -> str:
     """Complete, or what is missing."""
-    faults: list[Fault] = []
-    for _ in Recording(session.file).messages((), faults):
-        pass
-    words = [f"byte {fault.offset}: {fault.words}" for fault in faults]
+    words = [f"byte {fault.offset}: {fault.words}" for fault in session.damage]
     if not session.whole:
         words.insert(0, "torn")
-    words += [f"{topic.lost} lost on {topic.topic}" for topic in topics if topic.lost]
+    words += [f"{topic.lost} lost on {topic.topic}" for topic in session.topics if topic.lost]
     return "; ".join(words) or _COMPLETE
 
 

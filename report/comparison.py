@@ -66,13 +66,13 @@ def compare(
         for law in (None, teacher)
     )
     best_s = _fastest(task, starts)
-    rows = [["", "goal cell reached, %", "share of what is possible, %", "mean time, s"]]
+    rows = [["", "reach the goal, %", "of possible, %", "mean, s"]]
     for name, own in (
-        ("the last policy learned, alone", alone[-1][1]),
-        ("with the teacher where it knows nothing", driven[-1][1]),
-        ("linear law, tuned by hand", law_times(world, Linear(*HAND_TUNED, task.turn_rate_radps), starts)),
-        ("linear law, best of a grid", law_times(world, teacher, starts)),
-        ("best that is possible", best_s),
+        ("policy learned, alone", alone[-1][1]),
+        ("with the teacher", driven[-1][1]),
+        ("law tuned by hand", law_times(world, Linear(*HAND_TUNED, task.turn_rate_radps), starts)),
+        ("best law of a grid", law_times(world, teacher, starts)),
+        ("best possible", best_s),
     ):
         rows.append(_row(name, own, best_s))
     return Comparison(len(starts), _curve(driven), _curve(alone), rows, score(best_s).controllable_percent)

@@ -136,6 +136,16 @@ def test_report_says_where_its_page_is(berth, twins, tmp_path):
     assert (tmp_path / "page.html").exists()
 
 
+def test_two_recordings_are_compared(berth, tmp_path):
+    files = [LAUNCH.parent.parent / "recordings" / f"{name}.mcap" for name in ("reverse", "lost")]
+    code, out = berth("report", *files, "-o", tmp_path / "page.html", "--json")
+    told = json.loads(out)
+    assert code == 0
+    assert (told["A"]["file"], told["B"]["file"]) == tuple(map(str, files))
+    assert told["different"]["pilot.lost_s"] == ["15", "1"]
+    assert (tmp_path / "page.html").exists()
+
+
 @pytest.mark.parametrize("words", [("--help",), ("-h",)])
 def test_help_fits_a_screen(berth, words):
     code, out = berth(*words)

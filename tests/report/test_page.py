@@ -15,9 +15,11 @@ from schemas.percept_pb2 import Percept
 from schemas.policy_pb2 import Policy
 from schemas.trial_pb2 import Trial
 from schemas.truth_pb2 import Truth
-from tests.recorded_session import record
+from tests.recorded_session import ROOT, record
+from tests.runtime.offline import rewritten, without
 
 pytestmark = pytest.mark.xdist_group("session")
+FOLDER = ROOT / "recordings"
 FRAME_NS = 125_000_000
 
 
@@ -106,6 +108,19 @@ def test_a_session_without_trials_has_a_page(short, tmp_path):
     assert "No trial ended in this session." in text
     assert "No policy was published in this session." in text
     assert headings(text)[0] == "Learning"
+
+
+def test_a_session_without_truth_is_told_by_the_robot_itself(tmp_path):
+    file = rewritten(FOLDER / "docking.mcap", tmp_path / "real.mcap", without("simulator/truth"))
+    (trial,) = read(file).trials
+    page, _ = write_report(file)
+    text = page.read_text(encoding="utf-8")
+    assert (trial.docked, trial.picked) == (True, True)
+    assert len(trial.path) > 80
+    assert "No ground truth is in the file: outcomes are what the robot itself tells." in text
+    assert "camera heights" in text
+    assert "Tracking" not in text
+    assert "Accuracy" not in text
 
 
 def test_a_torn_session_has_a_page_that_says_so(twins, tmp_path):

@@ -7,8 +7,7 @@ import pytest
 
 from report.session import read
 from report.versus import Side, differences, newcombe, numbers, write
-from tests.report.test_page import headings, is_self_contained
-from tests.test_recordings import FOLDER
+from tests.report.test_page import FOLDER, headings, is_self_contained
 
 
 def test_the_interval_of_a_difference_is_newcombes():
