@@ -25,18 +25,18 @@ ACTIVATE = "[ ! -e .venv/bin/activate ] || source .venv/bin/activate\n"
 
 def main() -> int:
     """Follow the named pages, or all."""
-    chosen = [ROOT / name for name in sys.argv[1:]] or pages()
     with tempfile.TemporaryDirectory(prefix="berth-docs-") as name:
         clone = Path(name) / "berth"
         subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
-        setup = next(block for block in blocks(ROOT / "docs/tutorial.md") if block.mark == "setup")
+        chosen = [clone / name for name in sys.argv[1:]] or pages(clone)
+        setup = next(block for block in blocks(clone / "docs/tutorial.md") if block.mark == "setup")
         kept = [run(setup, clone), *(follow(page, clone) for page in chosen)]
     return 0 if all(kept) else 1
 
 
 def follow(page: Path, clone: Path) -> bool:
     """Whether every command of a page succeeds."""
-    say(f"{page.relative_to(ROOT)}")
+    say(f"{page.relative_to(clone)}")
     kept = []
     with ExitStack() as waiting:
         for block in blocks(page):

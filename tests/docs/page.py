@@ -76,9 +76,9 @@ def blocks(page: Path) -> list[Block]:
     return [Block(found["mark"] or "", found["kind"], found["text"]) for found in _BLOCK.finditer(text)]
 
 
-def pages() -> list[Path]:
-    """Every page that a person reads commands in; the history names old ones."""
-    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+def pages(root: Path = ROOT) -> list[Path]:
+    """Every page that a person reads commands in."""
+    return [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
 
 
 def write_file(folder: Path, block: Block) -> None:
