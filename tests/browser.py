@@ -78,8 +78,13 @@ class Browser:
         *whole, self._heard = (self._heard + said).split(b"\0")
         return [json.loads(words) for words in whole]
 
-    def open(self, url: str) -> None:
+    def open(self, url: str, deadline_s: float = 240.0) -> None:
+        """Go to a page and wait until all that it names is there."""
         self.tell("Page.navigate", url=url)
+        until_s = time.monotonic() + deadline_s
+        while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
+            assert time.monotonic() < until_s, f"{url} does not load"
+            self.events += self._hear(1.0)
 
     def evaluate(self, script: str):
         """Value of an expression in the page."""
