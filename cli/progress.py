@@ -11,6 +11,7 @@ from rich.live import Live
 from rich.table import Table
 
 from docking.score import Trial
+from report.forecast import sentence
 from report.frames import Scoreboard
 from schemas.trial_pb2 import Trial as TrialMessage
 
@@ -76,10 +77,12 @@ def _rows(board: Scoreboard, wall_s: float, messages: int, lost: int) -> list[tu
     state = board.trial
     phase = TrialMessage.Phase.Name(state.phase) if state is not None else "TRAIN"
     mode = TrialMessage.Mode.Name(state.mode).lower() if state is not None else "starting"
+    told = sentence(state) if state is not None else ""
     return [
         ("phase", f"{phase.lower()}, {mode}"),
         ("robot minutes", f"{board.robot_s / 60:.1f}"),
         ("trials", str(len(board.scorer.trials))),
+        *([("this trial", told)] if told else []),
         ("success over the last 20", _success(board.scorer.last(20, phase), phase)),
         ("policy version", str(state.policy_version if state is not None else 0)),
         ("collisions", str(board.scorer.collisions)),
