@@ -27,7 +27,7 @@ from report.shadow import task_of
 from schemas.policy_pb2 import Policy
 
 Floats = NDArray[np.float64]
-_MOST, _MOST_FINE = 40, 10
+_MOST, _MOST_FINE = 24, 10
 """Policies evaluated; those that know the distance take longer."""
 _STEP_RAD, _STEP_M, _BACKUP_SAMPLES = 1.0 * DEG, 0.02, 2
 """How finely the best is computed: ten times as fast as `Problem`'s own steps, and 0.2 points lower."""
