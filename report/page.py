@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from docking.score import Trial, outcomes
+from docking.score import Trial, brier, outcomes
 from report import charts, html
 from report.charts import Figure
 from report.comparison import Comparison
@@ -116,7 +116,17 @@ def outcome_rows(groups: Mapping[str, Sequence[Trial]]) -> list[list[str]]:
     counts = [dict(outcomes(list(trials))) for trials in groups.values()]
     rows += [[name, *(str(count[name]) for count in counts)] for name, _ in outcomes([])]
     rows.append(["mean time to dock, s", *(_mean_s(trials) for trials in groups.values())])
+    if any(trial.dock_share > 0.0 for trials in groups.values() for trial in trials):
+        likely = (sum(trial.dock_share >= 0.5 for trial in trials) for trials in groups.values())
+        rows.append(["forecast to dock", *map(str, likely)])
+        rows.append(["Brier score of that", *(_brier(trials) for trials in groups.values())])
     return rows
+
+
+def _brier(trials: Sequence[Trial]) -> str:
+    """A trial that only trains ends before it docks: nothing to judge a forecast by."""
+    square, told = brier([trial for trial in trials if trial.phase == "EVALUATE"])
+    return f"{square:.3f}" if told else "-"
 
 
 def _mean_s(trials: Sequence[Trial]) -> str:

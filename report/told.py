@@ -69,4 +69,5 @@ class Told:
             gripper_longitudinal_m=_NAN,
             collided=False,
             holding=False,
+            dock_share=trial.dock_share,
         )
