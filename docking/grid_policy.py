@@ -18,6 +18,8 @@ UNKNOWN = -1
 """Action of a node that nothing is known about."""
 TRIED = -2
 """Less its index: an action that is only tried, to learn."""
+MOST_PAIRED = 10
+"""With more actions no node has one for driving and another one for training: int8 holds no more pairs."""
 LARGEST_NODES = 4_000_000
 """More is refused."""
 LONGEST_HOLD = 32
@@ -75,8 +77,8 @@ class GridPolicy:
 
     axes: Axes
     action: NDArray[np.int8]
-    """[d, alpha, beta] index into `actions`, UNKNOWN where nothing arrives or the model is not trusted. There an action
-    that is worth trying in training is TRIED less its index."""
+    """[d, alpha, beta] index into `actions`, UNKNOWN where nothing arrives or the model is not trusted. An action
+    that is worth trying in training, in place of that or of none, is there as `paired` writes it."""
     actions: tuple[tuple[float, float], ...]
     """(v_mps, omega_radps) of each action."""
     model: RateModel
@@ -102,8 +104,9 @@ class GridPolicy:
         _require(self.action.dtype == np.int8, f"action must be int8; got {self.action.dtype}")
         _require(0 < len(self.actions) <= 127, f"there must be 1..127 actions; got {len(self.actions)}")
         _require(bool(np.isfinite(self.actions).all()), f"actions must be finite; got {self.actions}")
-        known = (self.action > TRIED - len(self.actions)) & (self.action < len(self.actions))
-        _require(bool(known.all()), f"action must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
+        least = lowest(len(self.actions))
+        known = (self.action >= least) & (self.action < len(self.actions))
+        _require(bool(known.all()), f"action must be in {least}..{len(self.actions) - 1}")
         _require(0 <= self.back_samples <= LONGEST_HOLD, f"back_samples must be in 0..{LONGEST_HOLD}")
         _require(self.version >= 0 and self.samples >= 0, "version and samples must be >= 0")
 
@@ -111,12 +114,13 @@ class GridPolicy:
         """Index of the action at (beta, alpha, ln d) `[N, 3]`; UNKNOWN outside or where nothing is known: `[N]`."""
         nodes = self.axes.nearest(states)
         found = np.where(nodes >= 0, self.action.reshape(-1)[nodes], UNKNOWN).astype(np.int64)
-        return np.where(found <= TRIED, TRIED - found if exploring else UNKNOWN, found)
+        driven, tried = np.divmod(TRIED - found, len(self.actions))
+        return np.where(found <= TRIED, tried if exploring else driven + UNKNOWN, found)
 
     @property
     def known(self) -> int:
-        """Number of nodes with an action."""
-        return int(np.count_nonzero(self.action >= 0))
+        """Number of nodes with an action to drive."""
+        return int(np.count_nonzero((self.action >= 0) | (self.action <= TRIED - len(self.actions))))
 
     def to_bytes(self) -> bytes:
         """As a file's contents; equal policies give equal bytes."""
@@ -165,6 +169,17 @@ class GridPolicy:
             )
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"policy is incomplete or mistyped: {error!r}") from error
+
+
+def lowest(actions: int) -> int:
+    """The least number in a table of so many actions."""
+    return TRIED + 1 - actions * (actions + 1 if actions <= MOST_PAIRED else 1)
+
+
+def paired(driven: NDArray[np.int8], tried: NDArray[np.int64], actions: int) -> NDArray[np.int8]:
+    """One table of two: what is driven (or UNKNOWN), and what is tried instead in training (UNKNOWN: the same)."""
+    both = TRIED - tried - (actions * (driven.astype(np.int64) - UNKNOWN) if actions <= MOST_PAIRED else 0)
+    return np.where(tried == UNKNOWN, driven, both).astype(np.int8)
 
 
 def _axes(header: dict[str, Any]) -> Axes:

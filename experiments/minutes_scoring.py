@@ -33,5 +33,5 @@ def grid_policy_times(
         chooser.keep(going)
         if not len(driving):
             break
-        poses = drivetrain.drive(poses, chooser.act(robot.percepts(poses, rng)), problem.sampling_s)
+        poses = drivetrain.drive(poses, chooser.act(robot.percepts(poses, drivetrain.motions, rng)), problem.sampling_s)
     return times

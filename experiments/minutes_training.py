@@ -128,21 +128,25 @@ class Trainee:
         for stop in minutes:
             while self.samples * self.problem.sampling_s < 60.0 * stop:
                 self.sample()
-            if self.learner.close():
-                self._plan()
+            self._plan()
             fit, policy = self.learner.memory.fit, self.learner.policy()
             if fit is None or policy is None:
                 raise RuntimeError(f"nothing was learned in {stop} minutes")
             yield Lesson(stop, policy, fit.structure.name, self.trials)
 
+    def change(self, robot: Robot) -> None:
+        """The robot becomes another one, and is shown its goal again."""
+        self.robot, self._drivetrain = robot, Drivetrain(robot, 1)
+        self.limits = perceptual_limits(self.problem, robot)
+        self.learner.planner.aim(self.limits)
+
     def sample(self) -> None:
         """One sampling period: see, learn, act, move."""
-        percept = self.robot.percepts(self._pose, self.rng)[0]
+        percept = self.robot.percepts(self._pose, self._drivetrain.motions, self.rng)[0]
         state = (float(percept[0]), float(percept[1]), float(percept[2]))
         self._change_stage(state)
         command = self._command(percept)
-        if self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None)):
-            self._plan()
+        self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None))
         self._pose = self._drivetrain.drive(self._pose, np.array([command]), self.problem.sampling_s)
         self.samples += 1
 
@@ -157,6 +161,7 @@ class Trainee:
         self._turning = self._turning or reverse.is_far_enough(_sight(state), self._back)
         there = self._turning and reverse.has_turned(self._rules, _sight(state), self._back)
         if there or late > _REVERSE_S:
+            self._plan()
             self._back, self._began, self._chooser = None, self.samples, self._new_chooser()
             self.trials += 1
 
@@ -169,7 +174,8 @@ class Trainee:
         return wish.v_mps, wish.omega_radps
 
     def _plan(self) -> None:
-        """Plan to the end: what takes a second on the robot is over before its next trial."""
+        """Learn from the way back and plan to the end: what takes a second is over before the next trial."""
+        self.learner.close()
         while self.learner.planner.busy:
             self.learner.advance(self.learner.planner.axes.d_nodes)
 

@@ -22,6 +22,7 @@ EXPERIMENTS: Mapping[str, str] = {
     "minutes-two-speeds": "experiments.minutes_two_speeds",
     "minutes-reverse": "experiments.minutes_reverse",
     "minutes-changed": "experiments.minutes_changed",
+    "minutes-mid-session": "experiments.minutes_mid_session",
 }
 """Name on the command line: module with `NAME`, `jobs`, `run` and `draw`."""
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from components.learner.planner import Planner
 from components.learner.regression import Fit
 from docking.angles import DEG
-from docking.grid_policy import TRIED, UNKNOWN
+from docking.grid_policy import UNKNOWN, paired
 from docking.rates import FUNCTIONS
 
 Floats = NDArray[np.float64]
@@ -40,28 +40,27 @@ class Trusted(NamedTuple):
     table: NDArray[np.int8]
     """[d, alpha, beta]"""
     unsure: bool
-    """Somewhere the model is not trusted."""
+    """Somewhere the model is worth learning more of."""
 
 
-def trusted_actions(planner: Planner, fit: Fit, trust_per_s: float, *, explore: bool) -> Trusted:
-    """The planner's action where the rates of all actions are known within `trust_per_s`.
+def trusted_actions(planner: Planner, fit: Fit, trust_per_s: float, known_per_s: float, *, explore: bool) -> Trusted:
+    """The planner's action where the rates of all actions are known within `trust_per_s`; else UNKNOWN: no plan.
 
-    Elsewhere TRIED less the action that is known least, where that is safe; else UNKNOWN. Both are the linear
-    controller's but for training.
+    Where they are not known within `known_per_s`, training tries the action that is known least, if that is safe.
     """
     doubt = doubts(fit, planner.nodes[1], planner.nodes[2], planner.actions)
-    table = planner.chosen()
-    unsure = doubt.max(axis=2) > trust_per_s
-    if unsure.any():
-        tried = _tried(planner, doubt) if explore else UNKNOWN
-        table = np.where(unsure[:, :, None], tried, table).astype(np.int8)
+    largest = doubt.max(axis=2)[:, :, None]
+    unsure = largest > known_per_s
+    table = np.where(largest > trust_per_s, UNKNOWN, planner.chosen()).astype(np.int8)
+    if explore and unsure.any():
+        table = paired(table, np.where(unsure, _tried(planner, doubt), UNKNOWN), len(planner.actions))
     return Trusted(table, bool(unsure.any()))
 
 
-def _tried(planner: Planner, doubt: Floats) -> NDArray[np.int8]:
-    """TRIED less the safe action of the largest doubt at each node, UNKNOWN where none is safe."""
+def _tried(planner: Planner, doubt: Floats) -> NDArray[np.int64]:
+    """The safe action of the largest doubt at each node, UNKNOWN where none is safe."""
     limits, beta = planner.limits, planner.nodes[0]
-    best, chosen = np.zeros(planner.axes.shape), np.full(planner.axes.shape, UNKNOWN, dtype=np.int8)
+    best, chosen = np.zeros(planner.axes.shape), np.full(planner.axes.shape, UNKNOWN)
     moves = planner.moves(_AHEAD_S)
     for action in range(len(planner.actions)):
         shift, alpha, d = np.moveaxis(moves[:, :, action], -1, 0)
@@ -69,6 +68,6 @@ def _tried(planner: Planner, doubt: Floats) -> NDArray[np.int8]:
         inside &= d < limits.d_max_m
         safe = inside[:, :, None] & (np.abs(beta + shift[:, :, None]) < limits.beta_range_rad - _MARGIN_RAD)
         better = safe & (doubt[:, :, action, None] > best)
-        chosen[better] = TRIED - action
+        chosen[better] = action
         best = np.where(better, doubt[:, :, action, None], best)
     return chosen

@@ -15,7 +15,7 @@ from components.learner.model import checked
 from components.learner.motion_memory import MotionMemory
 from components.learner.planner import Planner, axes_of
 from components.learner.structure import STRUCTURES
-from docking.grid_policy import TRIED, UNKNOWN, GridPolicy
+from docking.grid_policy import UNKNOWN, GridPolicy, lowest
 from docking.levels import Limits
 from docking.rates import RateModel
 from docking.value_iteration import LATE_S
@@ -41,14 +41,17 @@ class Planning:
     """Time constant of forgetting."""
     surprise: float = 9.0
     """A stretch of frames whose mean square error is so many times the expected one makes it forget what was before."""
-    trust_per_s: float = 0.03
+    trust_per_s: float = 0.3
     """Standard deviation of the rates, in rad/s and shares of the distance per second, up to which they are trusted."""
+    known_per_s: float = 0.03
+    """As above, up to which nothing more has to be learned of them."""
     replan_per_s: float = 0.005
     """No new plan is made for rates that differ by less, rad/s and camera heights per second."""
     back_samples: int = 0
     """Driving backwards is planned to be done for so many periods at a time; 0 = as any other action."""
     explore: bool = True
-    """Where they are not trusted the least known action is tried if that is safe; else the linear controller drives."""
+    """In training the least known action is tried where that is safe. Where the rates are not trusted, and nothing is
+    to be tried, the linear controller drives."""
 
 
 class Seen(NamedTuple):
@@ -132,7 +135,9 @@ class Perceptual:
             return False
         planning = self.planning
         self.half_seconds[...] = np.ceil(2.0 * np.minimum(self.planner.times_s, LATE_S))
-        self.table, self._unsure = trusted_actions(self.planner, fit, planning.trust_per_s, explore=planning.explore)
+        self.table, self._unsure = trusted_actions(
+            self.planner, fit, planning.trust_per_s, planning.known_per_s, explore=planning.explore
+        )
         self._begin()
         return True
 
@@ -186,8 +191,9 @@ class Perceptual:
         sums = {name: checked(arrays, name, own) for name, own in self.memory.sums.arrays().items()}
         table = checked(arrays, "table", self.table)
         half_seconds = checked(arrays, "half_seconds", self.half_seconds)
-        if not ((table > TRIED - len(self.actions)) & (table < len(self.actions))).all():
-            raise ValueError(f"table must be in {TRIED + 1 - len(self.actions)}..{len(self.actions) - 1}")
+        least = lowest(len(self.actions))
+        if not ((table >= least) & (table < len(self.actions))).all():
+            raise ValueError(f"table must be in {least}..{len(self.actions) - 1}")
         try:
             stretch = [_seen(row) for row in header["stretch"]]
             stage, samples = int(header["stage"]), int(header["samples"])

@@ -14,6 +14,7 @@ from docking.angles import DEG
 from docking.rates import RateModel
 
 Floats = NDArray[np.float64]
+Parts = list[tuple[Floats, Floats]]
 
 _LEAST_VARIANCE = np.square((0.05 * DEG, 0.05 * DEG, 0.002))
 """No percept is better than this, and no structure is worth more numbers for a smaller error."""
@@ -49,23 +50,27 @@ def best_fit(sums: NormalEquations, structures: Sequence[Structure]) -> Fit:
     Delays are judged under the second structure, which does not mirror: one that does would take a robot that drifts to
     one side for a late one.
     """
-    by_delay = [fitted(sums, index, structures[1], None) for index in range(len(DELAYS))]
-    index = int(np.argmin([np.log(fit.variance).sum() for fit in by_delay]))
-    variance = fitted(sums, index, structures[-1], None).variance
+    by_delay = [_variance(sums, index, structures[1]) for index in range(len(DELAYS))]
+    index = int(np.argmin([np.log(variance).sum() for variance in by_delay]))
+    variance = _variance(sums, index, structures[-1])
     fits = [fitted(sums, index, structure, variance) for structure in structures]
-    chosen = max(fits, key=lambda fit: fit.log_evidence)
-    return fitted(sums, index, chosen.structure, None)
+    chosen = max(fits, key=lambda fit: fit.log_evidence).structure
+    return fitted(sums, index, chosen, _variance(sums, index, chosen))
 
 
-def fitted(sums: NormalEquations, index: int, structure: Structure, variance: Floats | None) -> Fit:
-    """Posterior at one delay; a variance `[3]` that is not given is found from what remains."""
-    rounds = _ROUNDS if variance is None else 1
-    current = np.full(3, 1e-4) if variance is None else variance
-    for _ in range(rounds):
-        fit = _posterior(sums, index, structure, current)
-        if variance is None:
-            current = _remaining(sums, index, structure, fit.mean)
-    return Fit(structure, fit.delay, fit.mean, fit.covariance, current, fit.log_evidence)
+def fitted(sums: NormalEquations, index: int, structure: Structure, variance: Floats) -> Fit:
+    """Posterior at one delay and one variance `[3]` of the measurements."""
+    precision, moment = _normal(_parts(sums, index, structure), structure, variance)
+    covariance = np.asarray(np.linalg.inv(precision), dtype=np.float64)
+    mean = covariance @ moment
+    log_evidence = 0.5 * float(
+        mean @ precision @ mean
+        - (sums.square[index] / variance).sum()
+        - sums.count[index] * np.log(variance).sum()
+        - np.linalg.slogdet(precision)[1]
+        - 2.0 * np.log(structure.spread).sum()
+    )
+    return Fit(structure, DELAYS[index], mean, covariance, variance, log_evidence)
 
 
 def surprise(fit: Fit, fresh: NormalEquations) -> float:
@@ -78,33 +83,33 @@ def surprise(fit: Fit, fresh: NormalEquations) -> float:
         return 0.0
     unknown = [float(np.sum(gram * fit.covariance)) for gram, _ in _parts(fresh, index, fit.structure)]
     expected = np.maximum(fit.variance + np.array(unknown) / fresh.count[index], _NO_SURPRISE)
-    return float((_remaining(fresh, index, fit.structure, fit.mean) / expected).max())
+    return float((_remaining(fresh, index, _parts(fresh, index, fit.structure), fit.mean) / expected).max())
 
 
-def _parts(sums: NormalEquations, index: int, structure: Structure) -> list[tuple[Floats, Floats]]:
+def _variance(sums: NormalEquations, index: int, structure: Structure) -> Floats:
+    """Of the measurements `[3]`, found from what a structure leaves at one delay."""
+    variance, parts = np.full(3, 1e-4), _parts(sums, index, structure)
+    for _ in range(_ROUNDS):
+        mean = np.asarray(np.linalg.solve(*_normal(parts, structure, variance)), dtype=np.float64)
+        variance = _remaining(sums, index, parts, mean)
+    return variance
+
+
+def _parts(sums: NormalEquations, index: int, structure: Structure) -> Parts:
     """Gram matrix and moment of the structure's numbers, for each rate."""
     maps = structure.matrix.reshape(3, -1, structure.matrix.shape[1])
     return [(T.T @ sums.gram[index] @ T, T.T @ sums.moment[index, j]) for j, T in enumerate(maps)]
 
 
-def _posterior(sums: NormalEquations, index: int, structure: Structure, variance: Floats) -> Fit:
-    parts = _parts(sums, index, structure)
-    precision = np.diag(structure.spread**-2.0) + sum(gram / s for (gram, _), s in zip(parts, variance, strict=True))
-    moment = sum(m / s for (_, m), s in zip(parts, variance, strict=True))
-    covariance = np.linalg.inv(precision)
-    mean = covariance @ moment
-    count = sums.count[index]
-    log_evidence = 0.5 * float(
-        mean @ precision @ mean
-        - (sums.square[index] / variance).sum()
-        - count * np.log(variance).sum()
-        - np.linalg.slogdet(precision)[1]
-        - 2.0 * np.log(structure.spread).sum()
-    )
-    return Fit(structure, DELAYS[index], mean, covariance, variance, log_evidence)
+def _normal(parts: Parts, structure: Structure, variance: Floats) -> tuple[Floats, Floats]:
+    """Precision and moment of the posterior."""
+    precision: Floats = np.diag(structure.spread**-2.0)
+    moment: Floats = np.zeros(len(precision))
+    for (gram, m), s in zip(parts, variance, strict=True):
+        precision, moment = precision + gram / s, moment + m / s
+    return precision, moment
 
 
-def _remaining(sums: NormalEquations, index: int, structure: Structure, mean: Floats) -> Floats:
-    parts = _parts(sums, index, structure)
+def _remaining(sums: NormalEquations, index: int, parts: Parts, mean: Floats) -> Floats:
     rest = [sums.square[index, j] - 2.0 * mean @ m + mean @ g @ mean for j, (g, m) in enumerate(parts)]
     return np.asarray(np.maximum(np.array(rest) / max(sums.count[index], 1.0), _LEAST_VARIANCE))

@@ -60,9 +60,11 @@ class Settings:
     """Ours only: time constant of forgetting."""
     surprise: float = positive(9.0)
     """Ours only: motion whose mean square error is so many times the expected one makes it forget what was before."""
-    trust_per_s: float = positive(0.03)
+    trust_per_s: float = positive(0.3)
     """Ours only: rates (rad/s; share of the distance per second) known within this are trusted; else the linear
-    controller drives, or the least known action where that is safe."""
+    controller drives."""
+    known_per_s: float = positive(0.03)
+    """Ours only: where they are not known within this, training tries the least known action if that is safe."""
     room_beta_rad: float = between(80 * DEG, 0.01, 1.55)
     """Ours only: plans may leave the task's range of beta, up to this. The edge is read as well there."""
     room_alpha_rad: float = between(95 * DEG, 0.01, 3.14)

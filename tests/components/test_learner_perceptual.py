@@ -28,7 +28,7 @@ def frames(robot, seed, count=100):
     percepts, commands, action = [], [], 0
     for k in range(count):
         action = int(rng.integers(2)) if k % 5 == 0 else action
-        percepts.append(robot.percepts(pose, rng)[0])
+        percepts.append(robot.percepts(pose, drivetrain.motions, rng)[0])
         commands.append(ACTIONS[action])
         pose = drivetrain.drive(pose, np.array([ACTIONS[action]]), PERIOD_S)
     return np.array(percepts), np.array(commands)
@@ -156,7 +156,9 @@ def test_a_frame_in_which_nothing_was_seen_ends_a_stretch():
 
 def test_where_the_model_is_not_trusted_nothing_is_known():
     learner = Perceptual(
-        Planning("structure-given", angle_step_rad=6 * DEG, d_share=0.5, trust_per_s=1e-9), LIMITS, ACTIONS
+        Planning("structure-given", angle_step_rad=6 * DEG, d_share=0.5, trust_per_s=1e-9, explore=False),
+        LIMITS,
+        ACTIONS,
     )
     fed(learner)
     learner.close()
@@ -165,3 +167,19 @@ def test_where_the_model_is_not_trusted_nothing_is_known():
     policy = learner.policy()
     assert policy is None or policy.known == 0
     assert math.isfinite(learner.memory.fit.log_evidence)
+
+
+def test_training_tries_what_is_not_known_where_the_plan_is_driven_otherwise():
+    learner = Perceptual(
+        Planning("structure-given", angle_step_rad=6 * DEG, d_share=0.5, known_per_s=1e-9), LIMITS, ACTIONS
+    )
+    fed(learner)
+    learner.close()
+    while learner.planner.busy:
+        learner.advance(50)
+    plan, trusted = learner.planner.chosen(), learner.policy()
+    around = np.linspace(-0.8, 0.8, 9)
+    states = np.array([[beta, alpha, math.log(d)] for beta in around for alpha in around for d in (1.0, 2.0, 4.0)])
+    assert (trusted.act(states) == plan.reshape(-1)[trusted.axes.nearest(states)]).all()
+    assert trusted.known == np.count_nonzero(plan >= 0)
+    assert (trusted.act(states, exploring=True) != trusted.act(states)).any()

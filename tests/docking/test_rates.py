@@ -7,7 +7,7 @@ import pytest
 
 from docking import plant
 from docking.angles import DEG
-from docking.grid_policy import TRIED, UNKNOWN, Axes, GridPolicy
+from docking.grid_policy import MOST_PAIRED, TRIED, UNKNOWN, Axes, GridPolicy, paired
 from docking.percept_filter import PerceptFilter, predicted
 from docking.rates import RateModel
 
@@ -91,6 +91,19 @@ def test_what_is_only_worth_trying_is_unknown_outside_training():
     assert tried.act(state).tolist() == [UNKNOWN]
     assert tried.act(state, exploring=True).tolist() == [1]
     assert tried.known == 0
+
+
+@pytest.mark.parametrize("actions", [1, 6, MOST_PAIRED])
+def test_a_node_may_have_one_action_to_drive_and_another_to_try(actions):
+    driven, tried = np.meshgrid(np.arange(-1, actions), np.arange(-1, actions), indexing="ij")
+    axes = Axes(1.0, 1.0, 0.5, 1.0, 2, actions + 1, actions + 1)
+    table = np.repeat(paired(driven.astype(np.int8), tried, actions)[:, :, None], 2, axis=2)
+    both = GridPolicy(axes, table, ((0.1, 0.2),) * actions, unicycle())
+    alpha, d = np.linspace(-1.0, 1.0, actions + 1), np.log(np.linspace(0.5, 1.0, actions + 1))
+    states = np.array([(1.0, a, x) for x in d for a in alpha])
+    assert both.act(states).tolist() == driven.ravel().tolist()
+    assert both.act(states, exploring=True).tolist() == np.where(tried == UNKNOWN, driven, tried).ravel().tolist()
+    assert both.known == 2 * np.count_nonzero(driven >= 0)
 
 
 def test_a_state_that_is_no_number_has_no_action():

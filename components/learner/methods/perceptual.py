@@ -44,6 +44,7 @@ class PerceptualMethod:
             memory_s=settings.memory_s,
             surprise=settings.surprise,
             trust_per_s=settings.trust_per_s,
+            known_per_s=settings.known_per_s,
             back_samples=settings.back_samples,
             explore=settings.explore,
         )

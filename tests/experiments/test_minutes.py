@@ -1,0 +1,68 @@
+"""What a robot learns in minutes, short; and that its rows and tables say what they are."""
+
+import csv
+import dataclasses
+
+import numpy as np
+import pytest
+
+from components.learner.perceptual import Planning
+from experiments import minutes, minutes_mid_session, minutes_picture
+from experiments.campaign import Options
+from experiments.minutes_training import Trainee
+from experiments.problem import Problem
+from experiments.robot import ROBOTS, Drivetrain, poses_of
+
+COARSE = {"angle_step_rad": 0.06, "d_share": 0.25}
+
+
+def trainee(robot="as built", method="structure-given", goal="dock", seed=0):
+    return Trainee(ROBOTS[robot], Problem(goal=goal), Planning(method=method, **COARSE), seed)
+
+
+def test_a_robot_that_is_never_put_anywhere_learns_its_numbers_in_half_a_minute():
+    (lesson,) = trainee().lessons((0.5,))
+    assert lesson.structure == "given, mirrored"
+    assert lesson.policy.known > 0.3 * lesson.policy.action.size
+
+
+def test_a_robot_that_changes_in_mid_session_is_learned_anew_and_its_goal_taken_over():
+    robot = trainee()
+    for _ in robot.lessons((0.5,)):
+        robot.change(ROBOTS["camera aside"])
+    (lesson,) = robot.lessons((1.5,))
+    assert lesson.structure == "given, not mirrored"
+    assert robot.learner.planner.limits == robot.limits != trainee().limits
+
+
+def test_a_percept_runs_ahead_of_a_robot_that_turns_and_not_of_one_that_stands():
+    robot, rng = ROBOTS["focal length x1.3"], np.random.default_rng(0)
+    poses, drivetrain = poses_of(np.array([[0.2, 0.1, 1.5]])), Drivetrain(robot, 1)
+    assert robot.percepts(poses, drivetrain.motions, rng) == pytest.approx(robot.seen(poses))
+    poses = drivetrain.drive(poses, np.array([[0.0, 0.2]]), 0.125)
+    ahead = robot.percepts(poses, drivetrain.motions, rng) - robot.seen(poses)
+    assert ahead[0] == pytest.approx([0.0, -0.2 * robot.lead_s, 0.0])
+
+
+def test_every_change_has_its_case_in_mid_session_and_its_own_ceiling():
+    jobs = minutes_mid_session.jobs(Options(seeds=(0,), goal="dock"))
+    assert len(jobs) == 12
+    assert {minutes.job_name(job) for job in jobs} == {"minutes-mid-session"}
+    assert minutes.problem_of(jobs[0]).limits.docking
+
+
+def rows(monkeypatch):
+    monkeypatch.setattr(minutes, "ceiling_times", lambda *_: np.full(961 * 5, 10.0))
+    job = {**minutes.jobs(Options(seeds=(3,), minutes=0.3, goal="dock"))[0]}
+    return [dataclasses.replace(row, seed=seed) for seed in (3, 4) for row in minutes.run(job)]
+
+
+def test_the_table_compares_with_the_ceiling_seed_by_seed(monkeypatch, tmp_path):
+    found = rows(monkeypatch)
+    table, picture = minutes_picture.draw(found, tmp_path)
+    (line,) = list(csv.DictReader(table.open(encoding="utf-8")))
+    own = next(row for row in found if row.controller.startswith("structure-given: "))
+    assert (line["seeds"], line["ceiling_percent"], line["robot_minutes"]) == ("2", "100", "0.3")
+    assert float(line["median_share"]) == pytest.approx(own.controllable_percent / 100.0, rel=1e-3)
+    assert float(line["median_time_ratio"]) == pytest.approx((own.docking_time_s or 0.0) / 10.0, rel=1e-3)
+    assert picture.exists()
