@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -31,6 +31,8 @@ LAUNCH = Path("launch/sim.toml")
 FRAMES = 320
 """At 8 Hz: forty seconds for each of the two."""
 WARM_UP = 16
+PLANNING = ("learner.method=structure-given", "pilot.controller=greedy", "task.action_set=reverse")
+"""The most that there is to plan: half a minute of sweeps, a slice after each frame."""
 LINKS = (("view", 80, "look"), ("percept", 80, ""), ("trial", 40, ""), ("drive", 30, ""), ("command", 30, ""))
 """What vision, tracker, pilot, grasper and base send: (name, bytes, work)."""
 _TIMEOUT_S = 180.0
@@ -71,10 +73,10 @@ class Bystander:
         return np.array(list(self._ages_ns.values())[WARM_UP:]) / 1e6
 
 
-def system_ages_ms(frames: int) -> tuple[NDArray[np.float64], bytes]:
+def system_ages_ms(frames: int, overrides: Sequence[str] = ()) -> tuple[NDArray[np.float64], bytes]:
     """(ages of the system's commands, one of its images as JPEG)."""
     with tempfile.TemporaryDirectory() as folder:
-        system = load(LAUNCH, clock="real", recording=Path(folder) / "latency.mcap")
+        system = load(LAUNCH, overrides, clock="real", recording=Path(folder) / "latency.mcap")
         system = dataclasses.replace(system, realm=f"benchmark/latency-{os.getpid()}")  # beside one that runs already
         with Supervisor(system) as supervisor, open_peer(supervisor.run.endpoint) as session:
             keys = [f"{system.realm}/{key}" for key in ("camera/image", "base/actuate")]
@@ -135,7 +137,16 @@ def figures(frames: int = FRAMES) -> list[Figure]:
         ours, bare = float(np.percentile(system, share)), float(np.percentile(floor, share))
         note = f"{ours:.2f} ms against {bare:.2f} ms"
         found.append(Figure(f"frame to command, p{share}", ours / bare, "x the bare chain", at_most=most, note=note))
-    return found
+    return [*found, planning(frames)]
+
+
+def planning(frames: int) -> Figure:
+    """What the learner of our own costs the command while it learns and plans, against the same system at rest."""
+    idle, _ = system_ages_ms(frames, (*PLANNING, "pilot.train_s=0"))
+    busy, _ = system_ages_ms(frames, PLANNING)
+    alone, beside = float(np.percentile(idle, 99)), float(np.percentile(busy, 99))
+    note = f"{beside:.2f} ms against {alone:.2f} ms, nothing learned or planned"
+    return Figure("frame to command while planning, p99", beside / alone, "x", at_most=1.1, note=note)
 
 
 def main() -> None:
