@@ -35,6 +35,8 @@ BENCHMARKS = {
     "goal": "a taught goal, the camera 5 cm aside and yawed 3 deg, against the axis: 500 paired starts",
 }
 """Module below benchmarks/ -> what it measures. Each has `figures() -> list[Figure]`."""
+_WIDTH = 160
+"""Columns of a table in a file or a pipe."""
 
 
 def main() -> int:
@@ -46,7 +48,8 @@ def main() -> int:
     for name in options.names:
         if name not in BENCHMARKS:
             parser.error(f"{name} is unknown; known are {', '.join(BENCHMARKS)}")
-    console = Console(stderr=options.json)
+    stream = sys.stderr if options.json else sys.stdout
+    console = Console(file=stream, width=None if stream.isatty() else _WIDTH)
     found: dict[str, list[Figure]] = {}
     for name in options.names or BENCHMARKS:
         console.print(f"[bold]{name}[/]: {BENCHMARKS[name]}")

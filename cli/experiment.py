@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 NAME = Annotated[
     str,
-    typer.Argument(help="ceiling, table2, curves, trajectories, schools, docking-law, ablation.", show_default=False),
+    typer.Argument(
+        help="ceiling, table2, curves, trajectories, schools, docking-law, ablation, paper-robot, "
+        "minutes, minutes-two-speeds, minutes-reverse, minutes-changed, minutes-mid-session.",
+        show_default=False,
+    ),
 ]
 SEEDS = Annotated[str | None, typer.Option(help="A count (20) or a list (3,5,9).")]
 MINUTES = Annotated[float | None, typer.Option(help="Robot minutes to learn.")]
@@ -35,6 +39,8 @@ DELAY = Annotated[int, typer.Option(help="Sampling periods from a percept to its
 GRIPPER = Annotated[float | None, typer.Option(help="Gripper ahead of the axle, m, for --goal dock.")]
 NEURAL = Annotated[bool, typer.Option("--neural", help="schools: a neural learner too; needs the extra `neural`.")]
 JSON = Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")]
+_WIDTH = 160
+"""Columns of the table in a file or a pipe."""
 
 
 def experiment(
@@ -129,7 +135,7 @@ def _print(outcome: Outcome) -> None:
 
     from experiments.summary import summary  # noqa: PLC0415
 
-    console, (header, *lines) = Console(), summary(outcome.rows)
+    console, (header, *lines) = Console(width=None if sys.stdout.isatty() else _WIDTH), summary(outcome.rows)
     table = Table(*header)
     for line in lines:
         table.add_row(*line)
