@@ -2,8 +2,9 @@
 
 One request is under way at a time. A position counts for the moment at which it was asked for, however late the answer
 is. Between two positions the newest aim goes out, so that neither starves the other. A camera that was read where it
-was told to be stands there until it is told to move on: nobody else moves it. So the frames of one that answers late
-need not wait for its answers, as long as it is not moved for nothing.
+was told to be stands there until it is told to move on: nobody else moves it. One that has done so some times in a row
+is taken to do so the next time: at its set speed, from when it was told to. So frames need not wait for answers. An
+answer that says otherwise ends that.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ _SETTLE_NS = _NS // 20
 """For speeding up and braking on the way to a target."""
 _NEAR = 2
 """Steps from where it was told to be."""
+_TRUST = 3
+"""Moves in a row that ended where they were told to."""
 _BITS = 10
 _BAUD = 9600
 
@@ -83,6 +86,10 @@ class Camera:
         self._from: Steps | None = None
         """Where it stood before the newest move, until that has been seen to be over."""
         self._arrives_ns = self._said_ns = self._answer_ns = 0
+        self._coming: Steps | None = None
+        """Where it will stand at `_arrives_ns` unless it says otherwise."""
+        self._kept = 0
+        """Moves in a row that it has made as told."""
         self.readings: deque[Reading] = deque(maxlen=8)
         self.words: deque[str] = deque(maxlen=8)
         self._answering = False
@@ -96,8 +103,9 @@ class Camera:
         """Under way."""
         self._asked_ns = self._due_ns = time_ns
         self._unanswered = 0
-        self._told = self._still = self._from = None
+        self._told = None
         self._moved = False
+        self._doubt()
 
     def aim(self, pan_rad: float, tilt_rad: float, pan_rate_radps: float, tilt_rate_radps: float) -> None:
         """Look there, `lead_s` ahead."""
@@ -115,6 +123,9 @@ class Camera:
         """What to send now; None = nothing."""
         if self._open is not None and time_ns >= self._asked_ns + round(self._params.answer_s * _NS):
             self._miss(time_ns)
+        if self._coming is not None and time_ns >= self._arrives_ns:
+            self._say(self._coming, self._arrives_ns)
+            self._still, self._coming = self._coming, None
         if self._still is not None and time_ns - self._said_ns >= _SAY_NS:
             self._say(self._still, time_ns)
         if self._open is not None or time_ns < self._due_ns:
@@ -146,8 +157,14 @@ class Camera:
             params = self._params
             way_s = self._way_rad(self._from, target, params.pan_rate_radps, params.tilt_rate_radps)
             self._arrives_ns += round(way_s * _NS)
+        self._coming = target if self._from is not None and self._kept >= _TRUST else None
         self._moved, self._told = True, target
         return request
+
+    def _doubt(self) -> None:
+        """Where it stands, and whether it does what it is told, is unknown."""
+        self._still = self._from = self._coming = None
+        self._kept = 0
 
     def _way_rad(self, from_: Steps, to: Steps, pan_rate: float, tilt_rate: float) -> float:
         """The longer one of both axes' ways, each over its rate."""
@@ -171,11 +188,18 @@ class Camera:
 
     def _read(self, steps: Steps) -> None:
         """It was there when it was asked."""
+        if self._asked_ns < self._arrives_ns:
+            self._say(steps, self._asked_ns)
+            return
         arrived = self._told is not None and max(abs(a - b) for a, b in zip(steps, self._told, strict=True)) <= _NEAR
         if arrived and self._from is not None and self._arrives_ns < self._asked_ns:
             self._say(steps, self._arrives_ns)
         self._say(steps, self._asked_ns)
-        self._still, self._from = (steps if arrived else None), None
+        if not arrived:
+            self._doubt()
+            return
+        self._kept += self._from is not None
+        self._still, self._from, self._coming = steps, None, None
 
     def _understand(self, reply: Reply, time_ns: int) -> None:
         if self._open is None or reply.kind == Kind.NEWS or not self._answers(reply, self._open):
@@ -192,6 +216,7 @@ class Camera:
             self._due_ns = time_ns + _AGAIN_NS
         elif reply.kind == Kind.BUSY:
             self._told, self._due_ns = None, time_ns + _AGAIN_NS
+            self._doubt()
         elif self._setup and open_ is self._setup[0]:
             self._setup.popleft()
 
@@ -203,7 +228,8 @@ class Camera:
     def _miss(self, time_ns: int) -> None:
         """No answer has come in time. One that still comes shall not be taken for that of the next request."""
         self._protocol.forget()
-        self._open = self._told = self._still = self._from = None
+        self._open = self._told = None
+        self._doubt()
         self._due_ns = time_ns + round(self._params.answer_s * _NS)
         self._unanswered += 1
         if self._unanswered < _PATIENCE:

@@ -43,6 +43,8 @@ class Body(World):
     def __init__(self, params, start, time_ns):
         super().__init__(params, start, time_ns)
         self.gripper = TwoMotors(params)
+        if params.begins == "fingertips":
+            self.gripper.begin_lowered()
         self.twist = lambda _time_ns: (0.0, 0.0)
         self.before_step = lambda _time_ns: None
 

@@ -44,6 +44,8 @@ class Robot:
     """As above: a packet other than the next SYNC spoils the handshake for good."""
     knows_gripper_pac: bool = True
     """Older firmware tells of its gripper in the standard packet alone."""
+    tells_gripper: bool = True
+    """In the standard packet, too."""
     gripper_kind: int = 2
     """In GRIPPERpac; 0 = there is none."""
     deaf: bool = False
@@ -245,7 +247,8 @@ class Robot:
                            124, stall, 0, flags, 0)  # fmt: skip
         if self.empty_sonar and self.sonar:
             return head + bytes((24,))
-        return head + bytes((0, 0, body.gripper_byte, 0, body.switches & 0x3F, 0))
+        gripper = body.gripper_byte if self.tells_gripper else 0
+        return head + bytes((0, 0, gripper, 0, body.switches & 0x3F, 0))
 
     def _odometry(self):
         x0, y0, heading0 = self.zero

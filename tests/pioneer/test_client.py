@@ -258,9 +258,10 @@ def test_sonar_readings_that_never_come_and_motors_that_are_on_harm_nobody():
     assert rig.readings[-1].rear_range_m is None
 
 
-@pytest.mark.parametrize("knows_gripper_pac", [True, False])
-def test_the_gripper_goes_through_a_pick_up(knows_gripper_pac):
-    rig = Rig(Pioneer(), knows_gripper_pac=knows_gripper_pac).connected().run(1.0)
+@pytest.mark.parametrize(("pac", "byte"), [(True, True), (True, False), (False, True)])
+def test_the_gripper_goes_through_a_pick_up(pac, byte):
+    rig = Rig(Pioneer(), knows_gripper_pac=pac, tells_gripper=byte).connected().run(1.0)
+    assert rig.readings[-1].switches.lift_up == byte, "GRIPPERpac alone does not tell at which end"
     rig.wish = Wish(gripper=1)
     rig.run(0.3)
     assert not rig.readings[-1].switches.lift_down, "it is still at the top"

@@ -259,9 +259,13 @@ class Client:
             self._gripper.see(pac, time_ns)
 
     def _see_flags(self, sip: Sip, time_ns: int) -> None:
-        """Firmware without GRIPPERpac: what the standard packet says must do."""
+        """Of firmware without GRIPPERpac, what the standard packet says must do."""
         flags = flags_of(sip)
-        if self._gripper_kind is None and flags is not None and time_ns - self._opened_ns >= _GRIPPER_NS:
+        if flags is None or self._gripper_kind == NO_GRIPPER:
+            return
+        if self._gripper_kind is not None:
+            self._gripper.hear(flags)
+        elif time_ns - self._opened_ns >= _GRIPPER_NS:
             self._gripper.see_flags(flags, time_ns)
 
     def _read(self, sip: Sip, time_ns: int) -> None:

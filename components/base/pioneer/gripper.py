@@ -1,7 +1,7 @@
 """The gripper by its commands and switches: what it is told, and what a pick-up needs to know of it. Pure.
 
-One switch says that the lift is at an end, not at which: it is the one that the lift was last sent to, if it has moved
-since. Commands are repeated, because nobody acknowledges them.
+GRIPPERpac's one switch says that the lift is at an end, not at which. Unless the standard packet tells, it is the end that
+the lift was last sent to, if it has moved since. Commands are repeated, because nobody acknowledges them.
 """
 
 from __future__ import annotations
@@ -79,6 +79,7 @@ class Gripper:
         self._lift, self._fingers = _Motor(), _Motor()
         self._reversed = (False, False)
         self._said_ns = 0
+        self._flags: GripperFlags | None = None
         self.switches = Switches()
 
     def command(self, action: int, lift_reversed: bool, fingers_reversed: bool, time_ns: int) -> tuple[bytes, ...]:
@@ -103,11 +104,20 @@ class Gripper:
         lift_moves = pac.lift_moves or not at_end
         up = self._lift.arrived(Code.LIFT_UP, lift_moves, time_ns)
         down = self._lift.arrived(Code.LIFT_DOWN, lift_moves, time_ns)
-        closed = self._fingers.arrived(Code.CLOSE, pac.fingers_move, time_ns)
+        closed = self._fingers.arrived(Code.CLOSE, pac.fingers_move, time_ns) and not pac.open
+        flags = self._flags
+        if flags is not None and flags.lift_up != flags.lift_down:
+            up, down = (end and not lift_moves for end in (flags.lift_up, flags.lift_down))
+        if flags is not None and flags.fingers_closed and not pac.fingers_move:
+            closed = True
         self.switches = Switches(inner, outer, up, down, closed)
 
+    def hear(self, flags: GripperFlags) -> None:
+        """Take what a standard packet says, of a robot that sends GRIPPERpacs: which end the lift is at."""
+        self._flags = flags
+
     def see_flags(self, flags: GripperFlags, time_ns: int) -> None:
-        """Take what a standard packet says: it tells by itself at which end the lift is."""
+        """Take what a standard packet says, of a robot that knows no GRIPPERpac."""
         up, down = (at_end and not flags.lift_moves for at_end in (flags.lift_up, flags.lift_down))
         closed = self._fingers.arrived(Code.CLOSE, flags.fingers_move, time_ns) or flags.fingers_closed
         inner, outer = self._obstructed(flags.inner_beam), self._obstructed(flags.outer_beam)
