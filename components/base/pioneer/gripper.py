@@ -1,7 +1,7 @@
 """The gripper by its commands and switches: what it is told, and what a pick-up needs to know of it. Pure.
 
-GRIPPERpac's one switch says that the lift is at an end, not at which. Unless the standard packet tells, it is the end that
-the lift was last sent to, if it has moved since. Commands are repeated, because nobody acknowledges them.
+GRIPPERpac's one switch says that the lift is at an end, not at which. Unless the standard packet tells, it is the one
+that the lift was last sent to, if it has moved since. Commands are repeated, because nobody acknowledges them.
 """
 
 from __future__ import annotations
