@@ -19,8 +19,6 @@ LEARNED_K = 4000.0
 LAMPS_K, LIGHTS = (2700.0, 3300.0, 4000.0, 5000.0, 6500.0), (0.1, 0.3, 1.0, 4.0)
 FRAMES = 60
 """Of each kind, lamp and light."""
-WHOLE_PX = 90
-"""`object_whole_pixels_min`: the room has a vivid green thing of 1 cm."""
 
 
 class Seen(NamedTuple):
@@ -67,7 +65,7 @@ def learned(edge: str) -> Params:
         u_px, v_px = np.rint(camera.project(point_m[None])[0] + half).astype(int).tolist()
         colours.append(pointing.colour(image, pointing.around(u_px, v_px, room.params.width_px)))
     table = colours[1] if edge == "stripe" else ()
-    return Params(edge=edge, object_colour=colours[0], table_colour=table, object_whole_pixels_min=WHOLE_PX)
+    return Params(edge=edge, object_colour=colours[0], table_colour=table)
 
 
 def _seen(edge: str, params: Params, lamp_k: float, light: float) -> Seen:

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.figure import Figure
-from benchmarks.scenes import Room, View, decoded
+from benchmarks.scenes import ORIGIN_M, Room, View, decoded
 from components.simulator.params import Params as WorldParams
 from components.vision import hough, jpeg
 from components.vision.core import Eyes
@@ -22,6 +23,7 @@ from components.vision.params import Params
 from docking.angles import DEG
 
 FRAMES = 2000
+OBJECTS, MARKERS = 1000, 500
 TIMED, ROUNDS = 40, 15
 WRONG_RAD = 1.0 * DEG
 """An edge further off is another line."""
@@ -54,6 +56,8 @@ def figures() -> list[Figure]:
         Figure(
             "edges lost or wrong, Hough", float(beside.lost + beside.wrong + without.lost + without.wrong), at_most=0
         ),
+        *_objects(),
+        *_markers(),
         *_costs([view.data for view in plain.views(TIMED)]),
     ]
 
@@ -74,6 +78,53 @@ def edges(room: Room, views: Sequence[View], params: Params) -> Edges:
     if not len(found):
         return Edges(np.nan, len(views), 0)
     return Edges(float(np.percentile(found, 95)), len(views) - len(found), int((found > WRONG_RAD).sum()))
+
+
+def _objects() -> list[Figure]:
+    """The green can among green things, cut off by the image's border or gone."""
+    found = []
+    for edge in ("stripe", "hough"):
+        room, eyes = Room(WorldParams(stripe=edge == "stripe")), Eyes(Params(edge=edge))
+        true = sum(
+            room.is_object(view.camera, eyes.look(decoded(view.data)).spot) for view in room.partial_views(OBJECTS)
+        )
+        false = sum(eyes.look(decoded(view.data)).spot is not None for view in room.empty_views(OBJECTS))
+        found += [
+            Figure(f"{edge}: object found, a quarter visible", true / OBJECTS, at_least=0.99),
+            Figure(f"{edge}: false objects", float(false), f"of {OBJECTS}", at_most=0),
+        ]
+    return found
+
+
+def _markers() -> list[Figure]:
+    """A marker of 8 cm, from everywhere; the room without one; what its detector costs."""
+    found = []
+    for width in (320, 640):
+        room = Room(WorldParams(object="marker", width_px=width))
+        eyes = Eyes(Params(object="marker", width_px=width, height_px=width * 3 // 4))
+        images = [(view.camera, decoded(view.data)) for view in room.views(MARKERS)]
+        spots = [(camera, eyes.look(image).spot) for camera, image in images]
+        away = [np.hypot(*(camera.project(ORIGIN_M[None])[0] - spot[:2])) for camera, spot in spots if spot]
+        false = sum(eyes.look(decoded(view.data)).spot is not None for view in room.empty_views(MARKERS))
+        note = f"middle off by {np.percentile(away, 95):.2f} px (95 %)"
+        least = 0.99 if width == 640 else None
+        found += [
+            Figure(f"marker of 8 cm found, {width} px", len(away) / MARKERS, at_least=least, note=note),
+            Figure(f"false markers, {width} px", float(false), f"of {MARKERS}", at_most=0),
+            Figure(f"marker looked for, {width} px", _cost(eyes, [image for _, image in images[:TIMED]]), "ms"),
+        ]
+    return found
+
+
+def _cost(eyes: Eyes, images: Sequence[NDArray[np.uint8]]) -> float:
+    """Processor time of the best of a few rounds, ms an image, without decoding."""
+    best = np.inf
+    for _ in range(3):
+        began_ns = time.thread_time_ns()
+        for image in images:
+            eyes.look(image)
+        best = min(best, (time.thread_time_ns() - began_ns) * 1e-6 / len(images))
+    return float(best)
 
 
 def _costs(frames: Sequence[bytes]) -> list[Figure]:

@@ -57,11 +57,34 @@ class Eyes:
         """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
         is_object, is_table = self._colours.masks(image)
         thing, spot = self._thing(image, is_object)
+        border = self._edge(image, is_table, thing, spot)
+        if self._marker is None and thing and spot and self._stands_apart(thing, spot, border):
+            return Sight(None, border and self._beside(border, spot))
+        return Sight(spot, border)
+
+    def _edge(self, image: NDArray[np.uint8], is_table: Mask, thing: Blob | None, spot: Spot | None) -> Border | None:
         if self._params.edge == "hough":
-            return Sight(spot, self._hough(image, thing, spot) if thing and spot else None)
+            return self._hough(image, thing, spot) if thing and spot else None
         stripes = blob.patches(is_table, self._params.pool, STRIPES if self._params.table_colour else 1)
         borders = (self._stripe(stripe, spot.u_px if spot else 0.0) for stripe in stripes)
-        return Sight(spot, next((border for border in borders if border is not None), None))
+        border = next((border for border in borders if border is not None), None)
+        if border is None and self._params.table_colour and thing and spot:
+            return self._hough(image, thing, spot)  # overexposed, or too dark: its border is still a line
+        return border
+
+    def _stands_apart(self, thing: Blob, spot: Spot, border: Border | None) -> bool:
+        """Whether it is too far from the table's edge for its size, or too small to be told without one."""
+        if border is None:
+            return spot.pixels < self._params.object_lone_pixels_min * self._params.scale**2
+        foot_px = thing.top_px + len(thing.mask) - self._half
+        gap_px = (border.v_px - foot_px) / np.hypot(1.0, border.slope)
+        return bool(gap_px > self._params.object_gap_max * max(thing.mask.shape))
+
+    def _beside(self, border: Border, spot: Spot) -> Border | None:
+        """The edge where there is no object: at the middle column; lines mean nothing without one."""
+        if self._params.edge == "hough":
+            return None
+        return border._replace(v_px=border.v_px - border.slope * spot.u_px)
 
     def _thing(self, image: NDArray[np.uint8], is_object: Mask) -> tuple[Blob | None, Spot | None]:
         """The object: what hides the edge, and where it is."""

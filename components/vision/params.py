@@ -69,10 +69,14 @@ class Params:
     object_pixels_min: int = positive(30)
     """Fewer pixels in an image 320 wide are not the object. A can 2.5 m away has 150."""
     object_whole_pixels_min: int = positive(30)
-    """Nor are fewer that the image's border does not cut off: 90 for a room with small green things, of which one of
-    1 cm has 84 from 0.27 m; a can 2.5 m away has 150."""
+    """Nor are fewer that the image's border does not cut off."""
     object_fill_min: float = between(0.4, 0.0, 1.0)
     """Nor is a patch that fills less of its box, such as leaves. A can in a pooled box has 0.5 and more."""
+    object_gap_max: float = positive(3.0)
+    """Nor is one whose foot is further from the table's edge than so many of its own lengths: what is to be picked up
+    stands at the edge. A can cut off anyhow has up to 1.8, a green cube of 1 cm, 25 cm behind the edge, 4.7 or more."""
+    object_lone_pixels_min: int = positive(90)
+    """Nor are fewer where no edge tells. A quarter of a can has 120 where the edge is out of sight."""
     edge_pixels_min: int = positive(60)
     """Fewer pixels in an image 320 wide are not the stripe."""
     edge_length_min_px: int = positive(64)

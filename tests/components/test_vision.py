@@ -4,10 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
+from benchmarks.scenes import Room, decoded
 from components.simulator.paint import Painter
 from components.simulator.params import Params as WorldParams
 from components.simulator.sensor import Sensor
 from components.vision.component import Vision
+from components.vision.core import Eyes
 from components.vision.params import Params
 from docking.angles import DEG
 from runtime.contract import STOP, Event
@@ -148,6 +150,51 @@ def test_the_largest_patch_is_the_object_whatever_else_is_green():
     view = seen(scene_of(*specks, (GREEN, 140, 90, 180, 150)))
     assert (view.object_u_px, view.object_v_px) == pytest.approx((0.0, 0.0), abs=1)
     assert view.object_pixels == pytest.approx(40 * 60, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("top", "is_object"), [(130, True), (100, True), (80, False)]
+)  # the foot 14, 44 and 64 px above the stripe's middle
+def test_what_stands_far_from_the_edge_for_its_size_is_not_the_object(top, is_object):
+    view = seen(scene_of((GREEN, 150, top, 166, top + 20), (ORANGE, 0, 160, 320, 168)))
+    assert view.object_visible == is_object
+    assert view.edge_v_px == pytest.approx(163.5 - 119.5, abs=0.6)
+
+
+def crossed(rectangle, start, end):
+    """A scene with a thing and an orange stripe from a point to another."""
+    image = decoded(scene_of(rectangle)).copy()
+    cv2.line(image, start, end, ORANGE, 8)
+    return jpeg(image)
+
+
+def test_the_way_to_a_steep_edge_is_measured_across_it():
+    view = seen(crossed((GREEN, 200, 20, 220, 50), (160, 239), (240, 0)))
+    assert view.edge_slope == pytest.approx(-3.0, abs=0.1)
+    assert view.object_visible
+    view = seen(crossed((GREEN, 185, 20, 205, 35), (160, 239), (240, 0)))
+    assert view.edge_v_px + 119.5 - 35 > 3.0 * 20, "far below it"
+    assert view.object_visible, "but near beside it"
+
+
+def test_an_edge_without_an_object_is_told_at_the_middle_column():
+    view = seen(crossed((GREEN, 10, 10, 30, 30), (0, 140), (319, 220)))
+    assert not view.object_visible
+    assert view.edge_v_px == pytest.approx(180 - 119.5, abs=1.0)
+
+
+def test_small_things_need_an_edge_to_be_told_by():
+    small, large = (GREEN, 100, 100, 108, 110), (GREEN, 100, 100, 110, 112)
+    assert not seen(scene_of(small)).object_visible
+    assert seen(scene_of(large)).object_visible
+    assert seen(scene_of(small, (ORANGE, 0, 116, 320, 124))).object_visible
+
+
+def test_in_a_room_with_a_vivid_green_thing_of_a_centimetre_there_is_no_object():
+    room, eyes, blind = Room(WorldParams()), Eyes(Params()), Eyes(Params(object_gap_max=1e3, object_lone_pixels_min=1))
+    images = [decoded(view.data) for view in room.empty_views(120, seed=29)]
+    assert not any(eyes.look(image).spot for image in images)
+    assert any(blind.look(image).spot for image in images), "the scenes would show it"
 
 
 def test_the_longest_stripe_is_the_edge_whatever_else_is_orange():

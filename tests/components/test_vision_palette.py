@@ -14,7 +14,7 @@ from docking.angles import DEG
 
 OBJECT, STRIPE = (22.0, 115.0, 45.0), (212.0, 108.0, 18.0)
 LAMPS = [(2700, 0.1), (2700, 1.0), (2700, 4.0), (4000, 0.1), (4000, 4.0), (6500, 0.1), (6500, 1.0), (6500, 4.0)]
-LEARNED = Params(edge="hough", object_colour=OBJECT, object_whole_pixels_min=90)
+LEARNED = Params(edge="hough", object_colour=OBJECT)
 
 
 @pytest.mark.parametrize(("lamp_k", "light"), LAMPS)
@@ -25,6 +25,17 @@ def test_colours_learned_in_one_light_are_known_in_others(lamp_k, light):
         sight = eyes.look(decoded(view.data))
         _, slope = room.edge(view.camera, sight.spot.u_px, "hough")
         assert np.arctan(sight.border.slope) == pytest.approx(np.arctan(slope), abs=0.3 * DEG)
+
+
+@pytest.mark.parametrize(("lamp_k", "light"), [(2700, 0.1), (2700, 4.0), (4000, 4.0)])
+def test_where_a_learned_stripe_is_not_known_its_border_is_found_by_lines(lamp_k, light):
+    room = Room(WorldParams(lamp_k=lamp_k, light=light))
+    learned = Eyes(Params(object_colour=OBJECT, table_colour=STRIPE))
+    for view in room.views(40, seed=5):
+        border = learned.look(decoded(view.data)).border
+        assert border is not None
+        _, slope = room.edge(view.camera, 0.0, "stripe")
+        assert np.arctan(border.slope) == pytest.approx(np.arctan(slope), abs=2.5 * DEG), "another line of the table"
 
 
 def test_without_an_object_there_is_none_under_any_lamp():
