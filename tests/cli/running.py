@@ -1,51 +1,14 @@
-"""Small systems with the real recorder, and the command as a process, for the tests of `berth record` and `play`."""
+"""The command as a process, and what is heard beside it, for the tests of `berth record` and `play`."""
 
 import json
-import secrets
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
-from runtime.launch import load
 from runtime.listener import Listener
 from runtime.recording import Logged, Recording
-from runtime.supervise import Supervisor
-from runtime.system import System
-
-DEADLINE_S = 30.0
-
-
-def recorded_system(directory: Path, overrides=(), *, clock: str = "lockstep", only=()) -> System:
-    """World and echo in a realm of their own, recorded."""
-    directory.mkdir(exist_ok=True)
-    file = directory / "small.toml"
-    file.write_text(
-        f"""
-realm = "test/{secrets.token_hex(6)}"
-[session]
-clock = "{clock}"
-end = "world/end"
-[component.world]
-run = "tests.runtime.parts.world"
-inputs = {{ drive = "echo/drive", ack = "recorder/ack" }}
-[component.echo]
-run = "tests.runtime.parts.echo"
-inputs = {{ image = "world/image" }}
-[component.recorder]
-run = "components.recorder"
-""",
-        encoding="utf-8",
-    )
-    return load(file, overrides, recording=directory / "session.mcap", only=only)
-
-
-def run_to_end(supervisor: Supervisor, condition=lambda: False) -> None:
-    """Look after the processes until a condition holds or the session ends."""
-    deadline_s = time.monotonic() + DEADLINE_S
-    while not condition() and supervisor.poll(0.01):
-        assert time.monotonic() < deadline_s, (supervisor.missing, supervisor.statuses)
+from tests.runtime.system import DEADLINE_S
 
 
 def berth(*words, stdin=subprocess.DEVNULL) -> subprocess.Popen:

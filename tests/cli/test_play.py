@@ -14,17 +14,8 @@ from runtime.params import ConfigurationError
 from runtime.recording import Recording
 from runtime.runfile import find
 from runtime.supervise import Supervisor
-from tests.cli.running import (
-    DEADLINE_S,
-    Ear,
-    berth,
-    by_key,
-    finish,
-    messages,
-    recorded_system,
-    run_to_end,
-    told,
-)
+from tests.cli.running import DEADLINE_S, Ear, berth, by_key, finish, messages, told
+from tests.runtime.system import recorded_system, run_until
 
 pytestmark = pytest.mark.xdist_group("live")
 FRAMES = 40
@@ -35,7 +26,7 @@ def log(tmp_path_factory):
     """A session of world and echo whose clock is real, ten times as fast."""
     system = recorded_system(tmp_path_factory.mktemp("log"), [f"world.frames={FRAMES}"], clock="10")
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor)
+        run_until(supervisor)
         supervisor.stop()
     assert supervisor.exit_code == 0
     return system
@@ -110,7 +101,7 @@ def test_a_log_stands_in_for_the_camera_of_a_running_system_in_real_time(log, tm
     with Supervisor(system) as supervisor:
         words = ["--replace", "world", "--realm", system.realm, "--start-offset", "1", "--duration", "2", "--json"]
         playing = berth("play", log.recording, *words)
-        run_to_end(supervisor, lambda: playing.poll() is not None)
+        run_until(supervisor, lambda: playing.poll() is not None)
         table = told(playing)
         supervisor.stop()
     assert [status.malformed for status in supervisor.statuses.values()] == [0, 0]
@@ -158,7 +149,7 @@ def idle(tmp_path_factory):
     """Realm of a system in real time that runs without its world."""
     system = recorded_system(tmp_path_factory.mktemp("idle"), clock="real", only=("echo", "recorder"))
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         yield system.realm
 
 

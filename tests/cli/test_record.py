@@ -9,7 +9,8 @@ from cli.record import record
 from runtime.params import ConfigurationError
 from runtime.supervise import Supervisor
 from schemas.drive_pb2 import BaseCommand
-from tests.cli.running import berth, by_key, finish, is_growing, messages, recorded_system, run_to_end, told
+from tests.cli.running import berth, by_key, finish, is_growing, messages, told
+from tests.runtime.system import recorded_system, run_until
 
 pytestmark = pytest.mark.xdist_group("live")
 
@@ -21,12 +22,12 @@ def overheard(tmp_path_factory):
     system = recorded_system(directory, ["world.frames=0"], clock="10")
     files = directory / "part.mcap", directory / "rest.mcap"
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         part = berth("record", "-o", files[0], "--realm", system.realm, "--json")
-        run_to_end(supervisor, is_growing(files[0]))
+        run_until(supervisor, is_growing(files[0]))
         part.send_signal(signal.SIGINT)
         rest = berth("record", "-o", files[1], "--realm", system.realm, "-x", "image|status", "--json")
-        run_to_end(supervisor, is_growing(files[1]))
+        run_until(supervisor, is_growing(files[1]))
         supervisor.stop("interrupted")
     return messages(system.recording), (told(part), messages(files[0])), (told(rest), messages(files[1])), supervisor
 
@@ -83,9 +84,9 @@ def test_in_lockstep_the_system_waits_rather_than_lose_a_message(tmp_path):
     system = recorded_system(tmp_path, ["world.frames=0"])
     file = tmp_path / "all.mcap"
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         watching = berth("record", "-o", file, "--realm", system.realm, "-x", "status", "--json")
-        run_to_end(supervisor, is_growing(file))
+        run_until(supervisor, is_growing(file))
         supervisor.stop()
     table = told(watching)
     assert (table["dropped"], table["refused"]) == (0, 0)
@@ -99,12 +100,12 @@ def test_a_full_disk_ends_the_recording_and_not_the_system(tmp_path):
     system = recorded_system(tmp_path, ["world.frames=0"], clock="10")
     file = tmp_path / "part.mcap"
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         watching = berth("record", "-o", file, "--realm", system.realm)
-        run_to_end(supervisor, is_growing(file))
+        run_until(supervisor, is_growing(file))
         size = file.stat().st_size + 100
         resource.prlimit(watching.pid, resource.RLIMIT_FSIZE, (size, size))
-        run_to_end(supervisor, lambda: watching.poll() is not None)
+        run_until(supervisor, lambda: watching.poll() is not None)
         code, out, _ = finish(watching)
         assert supervisor.poll(0.1)
     assert code == 1

@@ -9,7 +9,8 @@ import pytest
 
 from runtime.recording import Recording
 from runtime.supervise import Supervisor
-from tests.cli.running import is_growing, messages, recorded_system, run_to_end
+from tests.cli.running import is_growing, messages
+from tests.runtime.system import recorded_system, run_until
 
 pytestmark = pytest.mark.xdist_group("live")
 STOPPED = -2.0
@@ -32,11 +33,11 @@ def session(tmp_path):
 
         supervisor.watch("echo/drive", hear)
         with supervisor:
-            run_to_end(supervisor, is_growing(system.recording))
+            run_until(supervisor, is_growing(system.recording))
             harm(supervisor, system.recording)
-            run_to_end(supervisor)
+            run_until(supervisor)
             supervisor.stop()
-            run_to_end(supervisor)
+            run_until(supervisor)
         return supervisor, system.recording, speeds
 
     return run
@@ -70,7 +71,7 @@ def test_a_folder_that_takes_no_file_ends_the_session_before_it_begins(tmp_path)
     spec = system.component("recorder")
     spec.params["file"] = str(tmp_path / "file" / "x.mcap")
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor)
+        run_until(supervisor)
     assert "recorder: " in supervisor.end_reason
     assert "x.mcap: can not be made: " in supervisor.end_reason
     assert supervisor.exit_code == 1

@@ -12,6 +12,8 @@ from runtime.supervise import Supervisor
 from runtime.system import System
 
 DEADLINE_S = 30.0
+TAPS = {"witness": ("tests.runtime.parts.witness", "heard.jsonl"), "recorder": ("components.recorder", "session.mcap")}
+"""Name of a tap -> its package and the file that it writes."""
 
 
 class Heard(NamedTuple):
@@ -25,10 +27,21 @@ class Heard(NamedTuple):
 
 
 def small_system(
-    directory: Path, overrides=(), *, echo: str = "", world: str = "", clock: str = "lockstep", stall_s: float = 20.0
+    directory: Path,
+    overrides=(),
+    *,
+    fold: str = "echo",
+    echo: str = "",
+    world: str = "",
+    tap: str = "witness",
+    clock: str = "lockstep",
+    stall_s: float = 20.0,
+    only=(),
 ) -> System:
-    """World, echo and witness in a realm of their own."""
+    """World, a fold that answers it and a tap, in a realm of their own; `world` and `echo`: more lines of the two."""
+    directory.mkdir(exist_ok=True)
     file = directory / "small.toml"
+    package, recording = TAPS[tap]
     file.write_text(
         f"""
 realm = "test/{secrets.token_hex(6)}"
@@ -38,18 +51,23 @@ stall_s = {stall_s}
 end = "world/end"
 [component.world]
 run = "tests.runtime.parts.world"
-inputs = {{ drive = "echo/drive", ack = "witness/ack" }}
+inputs = {{ drive = "{fold}/drive", ack = "{tap}/ack" }}
 {world}
-[component.echo]
-run = "tests.runtime.parts.echo"
+[component.{fold}]
+run = "tests.runtime.parts.{fold}"
 inputs = {{ image = "world/image" }}
 {echo}
-[component.witness]
-run = "tests.runtime.parts.witness"
+[component.{tap}]
+run = "{package}"
 """,
         encoding="utf-8",
     )
-    return load(file, overrides, recording=directory / "heard.jsonl")
+    return load(file, overrides, recording=directory / recording, only=only)
+
+
+def recorded_system(directory: Path, overrides=(), **options) -> System:
+    """The same with the real recorder; options as of `small_system`."""
+    return small_system(directory, overrides, tap="recorder", **options)
 
 
 def heard(system: System) -> list[Heard]:
@@ -59,7 +77,7 @@ def heard(system: System) -> list[Heard]:
     return [Heard(key, schema, bytes.fromhex(payload), *rest) for key, schema, payload, *rest in rows]
 
 
-def run_until(supervisor: Supervisor, condition: Callable[[], bool]) -> None:
+def run_until(supervisor: Supervisor, condition: Callable[[], bool] = lambda: False) -> None:
     """Look after the processes until a condition holds or the session ends."""
     deadline_s = time.monotonic() + DEADLINE_S
     while not condition() and supervisor.poll(0.01):
@@ -68,7 +86,7 @@ def run_until(supervisor: Supervisor, condition: Callable[[], bool]) -> None:
 
 def run_to_end(supervisor: Supervisor) -> None:
     """Run until the session ends by itself, and stop it."""
-    run_until(supervisor, lambda: False)
+    run_until(supervisor)
     supervisor.stop()
 
 

@@ -11,7 +11,7 @@ from runtime.params import ConfigurationError
 from runtime.recording import Recording
 from runtime.replay import replay
 from runtime.supervise import Supervisor
-from tests.cli.running import run_to_end
+from tests.runtime.system import run_until
 
 DEADLINE_S = 60.0
 
@@ -115,13 +115,13 @@ def test_a_device_that_goes_away_ends_its_component_with_one_line(tmp_path, list
         far = Far(listener)
         assert far.says(1) == "2"
         far.hang_up()
-        run_to_end(supervisor)
+        run_until(supervisor)
         assert supervisor.end_reason == "wheels ended with exit code 1: wheels: line was closed"
         assert far.rest() == ["closed"]
 
 
 def test_a_device_that_is_not_there_is_told_in_one_line(tmp_path):
     with Supervisor(launch(tmp_path, f'{{ kind = "line", port = "{tmp_path / "line"}" }}')) as supervisor:
-        run_to_end(supervisor)
+        run_until(supervisor)
         assert supervisor.end_reason.startswith("wheels ended with exit code 1: wheels: line ")
         assert supervisor.end_reason.endswith("can not be opened: No such file or directory")

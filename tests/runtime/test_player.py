@@ -23,7 +23,8 @@ from runtime.runfile import find
 from runtime.selection import Selection
 from runtime.stage import joined_stage, own_stage
 from runtime.supervise import Supervisor
-from tests.cli.running import Ear, by_key, messages, recorded_system, run_to_end
+from tests.cli.running import Ear, by_key, messages
+from tests.runtime.system import recorded_system, run_until
 
 pytestmark = pytest.mark.xdist_group("live")
 FRAMES = 120
@@ -34,7 +35,7 @@ def log(tmp_path_factory):
     """A whole lockstep session of world and echo, whose recorder is never far behind."""
     system = recorded_system(tmp_path_factory.mktemp("log"), [f"world.frames={FRAMES}", "world.window=16"])
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor)
+        run_until(supervisor)
         supervisor.stop()
     assert supervisor.exit_code == 0
     return system
@@ -229,7 +230,7 @@ def play_instead(log, name, file):
     """Play a component in a system that runs without it; what was recorded."""
     system = load(log.file, ["world.frames=0"], only={"world", "echo", "recorder"} - {name}, recording=file)
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         chosen, opened, answers = stand_in(log, find(system.realm), name)
         with opened as stage:
             player = Player(chosen, stage, Playhead(0.0), clock=False, answers=answers)
@@ -263,16 +264,16 @@ def epochs_of(rows, key):
 def test_a_loop_in_a_running_system_begins_an_epoch_in_which_its_components_are_new(log, tmp_path, name):
     system = load(log.file, ["world.frames=0"], only={"world", "echo", "recorder"} - {name}, recording=tmp_path / "x")
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         chosen, opened, answers = stand_in(log, find(system.realm), name)
         ended = []
         with opened as stage:
             player = Player(chosen, stage, Playhead(0.0), loop=True, clock=False, answers=answers)
             playing = threading.Thread(target=lambda: ended.append(player.run()), daemon=True)
             playing.start()
-            run_to_end(supervisor, lambda: player.epochs >= 3 and player.played > 2.2 * FRAMES)
+            run_until(supervisor, lambda: player.epochs >= 3 and player.played > 2.2 * FRAMES)
             player.stop("enough")
-            run_to_end(supervisor, lambda: not playing.is_alive())
+            run_until(supervisor, lambda: not playing.is_alive())
         assert ended == ["enough"]
         supervisor.stop("played")
     assert (supervisor.exit_code, supervisor.lost, supervisor.deaths) == (0, 0, [])
@@ -289,7 +290,7 @@ def test_a_loop_in_a_running_system_begins_an_epoch_in_which_its_components_are_
 def test_who_runs_is_not_replaced(log):
     system = load(log.file, ["world.frames=0"], recording=None)
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
         chosen, opened, _ = stand_in(log, find(system.realm), "world")
         with pytest.raises(ConfigurationError, match="--replace world: must not run in"), opened:
             pass

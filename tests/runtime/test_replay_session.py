@@ -1,7 +1,6 @@
 """Every component of the simulation, replayed; and a live session of real processes."""
 
 import os
-import secrets
 import signal
 
 import pytest
@@ -14,7 +13,7 @@ from runtime.replay import replay
 from runtime.supervise import Supervisor
 from tests.recorded_session import LAUNCH
 from tests.runtime.offline import rewritten, without
-from tests.runtime.system import run_to_end, run_until
+from tests.runtime.system import recorded_system, run_to_end, run_until
 
 FOLDS = [spec.name for spec in load(LAUNCH).components if not spec.tap]
 
@@ -42,27 +41,8 @@ def test_a_component_is_told_nothing_of_what_it_said(twins, tmp_path, name):
 
 def processes(directory, clock: str, frames: int):
     """A world and a component that sums, each a process, recorded."""
-    launch = directory / "live.toml"
-    launch.write_text(
-        f"""
-realm = "test/{secrets.token_hex(6)}"
-[session]
-clock = "{clock}"
-end = "world/end"
-[component.world]
-run = "tests.runtime.parts.world"
-inputs = {{ drive = "fickle/drive", ack = "recorder/ack" }}
-params = {{ frames = {frames}, window = 16 }}
-[component.fickle]
-run = "tests.runtime.parts.fickle"
-restart = "on-failure"
-inputs = {{ image = "world/image" }}
-[component.recorder]
-run = "components.recorder"
-""",
-        encoding="utf-8",
-    )
-    return load(launch, recording=directory / "live.mcap")
+    words = [f"world.frames={frames}", "world.window=16"]
+    return recorded_system(directory, words, fold="fickle", echo='restart = "on-failure"', clock=clock)
 
 
 @pytest.fixture(scope="module")

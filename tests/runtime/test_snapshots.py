@@ -1,7 +1,6 @@
 """A component that is started again goes on from its newest snapshot, live and in replay."""
 
 import os
-import secrets
 import signal
 from collections import defaultdict
 from pathlib import Path
@@ -17,7 +16,7 @@ from runtime.supervise import Supervisor
 from schemas.drive_pb2 import BaseCommand
 from schemas.session_pb2 import Journal, Snapshot
 from tests.runtime.offline import rewritten, without
-from tests.runtime.system import run_until
+from tests.runtime.system import recorded_system, run_until
 
 pytestmark = pytest.mark.xdist_group("live")
 
@@ -26,27 +25,9 @@ pytestmark = pytest.mark.xdist_group("live")
 def restarted(tmp_path_factory) -> Path:
     """A live session whose scholar is killed after a snapshot, and started again."""
     directory = tmp_path_factory.mktemp("restarted")
-    launch = directory / "scholar.toml"
-    launch.write_text(
-        f"""
-realm = "test/{secrets.token_hex(6)}"
-[session]
-stall_s = 0.5
-[component.world]
-run = "tests.runtime.parts.world"
-inputs = {{ drive = "scholar/drive", ack = "recorder/ack" }}
-params = {{ frames = 0, window = 16 }}
-[component.scholar]
-run = "tests.runtime.parts.scholar"
-restart = "on-failure"
-inputs = {{ image = "world/image" }}
-params = {{ every = 200 }}  # it is killed long before the next one is under way
-[component.recorder]
-run = "components.recorder"
-""",
-        encoding="utf-8",
-    )
-    system = load(launch, recording=directory / "session.mcap")
+    more = 'restart = "on-failure"\nparams = { every = 200 }  # it is killed long before the next one is under way'
+    words = ["world.frames=0", "world.window=16"]
+    system = recorded_system(directory, words, fold="scholar", echo=more, stall_s=0.5)
     supervisor = Supervisor(system)
     snapshots: list[int] = []
     supervisor.watch("scholar/snapshot", lambda snapshot, _: snapshots.append(snapshot.version))
@@ -119,7 +100,7 @@ def test_a_snapshot_that_the_former_run_does_not_give_again_is_named(restarted, 
     ],
 )
 def test_what_is_no_snapshot_of_a_component_is_refused_by_name(restarted, part, payload, words):
-    spec = load(restarted.with_name("scholar.toml")).component("scholar")
+    spec = load(restarted.with_name("small.toml")).component("scholar")
     hosted = Hosted(spec.__class__(**{**vars(spec), "run": f"tests.runtime.parts.{part}", "params": {}}), 1)
     with pytest.raises(ValueError, match=words):
         hosted.load(payload)

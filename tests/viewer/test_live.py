@@ -7,7 +7,7 @@ import pytest
 
 from runtime.params import ConfigurationError
 from runtime.supervise import Supervisor
-from tests.cli.running import recorded_system, run_to_end
+from tests.runtime.system import recorded_system, run_until
 from viewer.live import follow
 from viewer.shown import Number, Page
 
@@ -46,7 +46,7 @@ def watched(tmp_path):
     system = recorded_system(tmp_path, ["world.frames=0"])
     wall, over, failed = Wall(), threading.Event(), []
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
 
         def watch():
             try:
@@ -67,7 +67,7 @@ def watched(tmp_path):
 
 def test_every_process_of_a_running_system_is_seen_and_the_system_does_not_notice(watched):
     supervisor, wall, _ = watched
-    run_to_end(
+    run_until(
         supervisor, lambda: all(f"| {name} | running |" in wall.table() for name in ("world", "echo", "recorder"))
     )
     assert set(wall.standing) == {"plan/table", "plan/edge", "plan/can", "plan/goal"}
@@ -77,12 +77,12 @@ def test_every_process_of_a_running_system_is_seen_and_the_system_does_not_notic
 
 def test_a_viewer_that_hangs_does_not_hold_the_robot_back(watched):
     supervisor, wall, _ = watched
-    run_to_end(supervisor, lambda: wall.table() != "")
+    run_until(supervisor, lambda: wall.table() != "")
     wall.goes_on.clear()
     before = supervisor.messages
-    run_to_end(supervisor, lambda: supervisor.messages > before + 20_000)  # more than twice what may wait for it
+    run_until(supervisor, lambda: supervisor.messages > before + 20_000)  # more than twice what may wait for it
     wall.goes_on.set()
-    run_to_end(supervisor, lambda: dropped(wall) > 0)
+    run_until(supervisor, lambda: dropped(wall) > 0)
     assert (supervisor.lost, supervisor.deaths) == (0, [])
 
 
@@ -101,14 +101,14 @@ def test_it_ends_with_the_system(tmp_path):
     system = recorded_system(tmp_path, ["world.frames=0"])
     wall, done = Wall(), threading.Event()
     with Supervisor(system) as supervisor:
-        run_to_end(supervisor, lambda: not supervisor.missing)
+        run_until(supervisor, lambda: not supervisor.missing)
 
         def watch():
             follow(supervisor.run, wall, 8.0, lambda: False)
             done.set()
 
         threading.Thread(target=watch, daemon=True).start()
-        run_to_end(supervisor, lambda: wall.table() != "")
+        run_until(supervisor, lambda: wall.table() != "")
         supervisor.stop()
     until_s = time.monotonic() + DEADLINE_S
     while not done.is_set():
