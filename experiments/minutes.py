@@ -23,7 +23,7 @@ from experiments import minutes_picture as pictures
 from experiments.campaign import Job, Options
 from experiments.ceiling import problem_of as ceiling_problem
 from experiments.minutes_picture import CEILING, COMMON, MIRROR
-from experiments.minutes_scoring import grid_policy_times
+from experiments.minutes_scoring import drives, grid_policy_times
 from experiments.minutes_training import Lesson, Trainee
 from experiments.problem import GRIPPER_M, Problem, action_set
 from experiments.reach_avoid import solve
@@ -81,7 +81,19 @@ def run(job: Job) -> Sequence[Row]:
 
 def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
     """The table of shares, the curves beside those who are compared, and each seed."""
-    return [*pictures.draw(rows, folder), pictures.curves(rows, folder)]
+    worst = pictures.worst_seed(rows, f"{LEARNED}: one-speed, noisy percepts, cell", 1.0)
+    shown = [] if worst is None else [_failure(worst, folder)]
+    return [*pictures.draw(rows, folder), pictures.curves(rows, folder), *shown]
+
+
+def _failure(seed: int, folder: Path) -> Path:
+    """Where the least sure of all lessons fails: one minute, no form, noise; of the seeds the worst."""
+    (job,) = jobs_of([("one-speed", "noisy percepts", LEARNED, (1.0,))], Options(seeds=(seed,)))
+    robot, problem, rng = ROBOTS[str(job["robot"])], problem_of(job), np.random.default_rng([seed, 7])
+    (lesson,) = trainee_of(job).lessons((1.0,))
+    driven = drives(lesson.policy, robot, problem, protocol_starts(), rng)
+    reachable = np.isfinite(ceiling_times("one-speed", "noisy percepts", "cell"))
+    return pictures.failure(list(driven), reachable, folder)
 
 
 def _lessons(job: Job) -> Iterator[Row]:

@@ -8,16 +8,22 @@ import statistics
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import ScalarFormatter
+from numpy.typing import NDArray
 
 from experiments.files import write_atomically
 from experiments.minutes_comparison import NAMES, PAPER
+from experiments.minutes_scoring import Driven
 from experiments.picture import picture
 from experiments.rows import Row, select
 
 CEILING, COMMON, MIRROR = "ceiling", ", on common starts", ", mirror"
 HEADER = ("controller", "robot_minutes", "seeds", "ceiling_percent", "median_percent", "worst_percent", "median_share",
           "worst_share", "median_time_ratio", "worst_time_ratio", "mirror_percent")  # fmt: skip
+_SHOWN_DISTANCE, _EVERY = 2, 12
+"""Of the protocol's distances, and every so many of its starts are drawn."""
 Line = tuple[str | int | float, ...]
 
 
@@ -57,7 +63,9 @@ def curves(rows: Sequence[Row], folder: Path) -> Path:
             axes[0].axhline(row.controllable_percent, color="k", lw=1.0, ls=style, label=label)
             axes[1].axhline(row.docking_time_s or math.nan, color="k", lw=1.0, ls=style)
         axes[0].set(xscale="log", xlabel="robot-minutes", ylabel="starts that reach the goal, %", ylim=(0, 70))
-        axes[1].set(xscale="log", xlabel="robot-minutes", ylabel="mean docking time, s", ylim=(0, None))
+        axes[1].set(xscale="log", xlabel="robot-minutes", ylabel="mean docking time, s", ylim=(10, 16))
+        for panel in axes:
+            panel.xaxis.set_major_formatter(ScalarFormatter())
         axes[0].set_title("median of the seeds; band: all of them")
         axes[0].figure.legend(loc="outside lower center", ncols=3)
 
@@ -79,6 +87,31 @@ def shares(rows: Sequence[Row]) -> Iterator[Line]:
                 name, minutes, len(percent), best, middle, worst, middle / best, worst / best,
                 statistics.median(ratios), max(ratios), statistics.mean(mirrored),
             )  # fmt: skip
+
+
+def worst_seed(rows: Sequence[Row], controller: str, minutes: float) -> int | None:
+    """The seed of the least share; None without such rows."""
+    found = means(rows, controller, minutes)
+    return min(found, key=lambda row: row.controllable_percent).seed if found else None
+
+
+def failure(driven: Sequence[Driven], reachable: NDArray[np.bool_], folder: Path) -> Path:
+    """Plan view of starts 1.5 m away that could be reached: those that are, and those that are not."""
+    at = np.flatnonzero(reachable & (np.arange(len(reachable)) // (len(reachable) // 5) == _SHOWN_DISTANCE))[::_EVERY]
+    ends = {int(n): bool(v == 1) for line in driven for n, v in zip(line.robots, line.verdicts, strict=True)}
+
+    def paint(axes: list[Axes]) -> None:
+        for panel, good in zip(axes, (True, False), strict=True):
+            chosen = [n for n in at if ends[int(n)] is good]
+            for n in chosen:
+                path = np.array([line.poses[line.robots == n][0] for line in driven if n in line.robots])
+                panel.plot(path[:, 1], path[:, 0], lw=0.8)
+                panel.plot(*path[-1, 1::-1], "." if good else "x", color="k", markersize=4)
+            panel.plot(0, 0, "o", color="tab:green", markersize=7)
+            panel.set(xlabel="along the table, m", ylabel="from the object, m", aspect="equal")
+            panel.set_title(f"{len(chosen)} of {len(at)} starts {'reach the goal' if good else 'do not'}")
+
+    return picture(folder / "minutes-failure.png", paint, columns=2, height_in=5.0)
 
 
 def means(rows: Sequence[Row], controller: str, minutes: float) -> list[Row]:

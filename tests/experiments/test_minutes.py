@@ -9,9 +9,12 @@ import pytest
 from components.learner.perceptual import Planning
 from experiments import minutes, minutes_mid_session, minutes_picture
 from experiments.campaign import Options
+from experiments.minutes_scoring import drives, grid_policy_times
 from experiments.minutes_training import Trainee
 from experiments.problem import Problem
 from experiments.robot import ROBOTS, Drivetrain, poses_of
+from experiments.rows import Row
+from experiments.starts import demo_starts
 
 COARSE = {"angle_step_rad": 0.06, "d_share": 0.25}
 
@@ -66,3 +69,24 @@ def test_the_table_compares_with_the_ceiling_seed_by_seed(monkeypatch, tmp_path)
     assert float(line["median_share"]) == pytest.approx(own.controllable_percent / 100.0, rel=1e-3)
     assert float(line["median_time_ratio"]) == pytest.approx((own.docking_time_s or 0.0) / 10.0, rel=1e-3)
     assert picture.exists()
+
+
+def test_who_reaches_the_goal_is_timed_by_when_it_is_there_and_drives_no_more():
+    robot, problem, starts = ROBOTS["noisy percepts"], Problem(goal="dock"), demo_starts(6)
+    (lesson,) = trainee().lessons((0.5,))
+    times = grid_policy_times(lesson.policy, robot, problem, starts, np.random.default_rng(1))
+    driven = list(drives(lesson.policy, robot, problem, starts, np.random.default_rng(1)))
+    for n, time_s in enumerate(times):
+        seen = [line.verdicts[line.robots == n][0] for line in driven if n in line.robots]
+        assert (seen[-1] == 1) == np.isfinite(time_s)
+        assert all(verdict == 0 for verdict in seen[:-1])
+        assert not np.isfinite(time_s) or time_s == pytest.approx((len(seen) - 1) * problem.sampling_s)
+    assert np.isfinite(times).any()
+
+
+def test_the_failure_that_is_shown_is_the_worst_seed_after_a_minute():
+    line = Row("minutes", "geometric", "x", 0, 1.0, None, 50.0, 12.0, None)
+    worse = dataclasses.replace(line, seed=7, controllable_percent=30.0)
+    later = dataclasses.replace(line, seed=8, robot_minutes=3.0, controllable_percent=20.0)
+    assert minutes_picture.worst_seed([line, worse, later], "x", 1.0) == 7
+    assert minutes_picture.worst_seed([line], "y", 1.0) is None
