@@ -6,6 +6,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -15,6 +16,15 @@ _FLAGS = (
     "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--hide-scrollbars", "--remote-debugging-pipe",
 )  # fmt: skip
+
+_PLUG = """
+import os, sys
+import fcntl
+high = [fcntl.fcntl(int(end), fcntl.F_DUPFD, 10) for end in sys.argv[1:3]]
+os.dup2(high[0], 3); os.dup2(high[1], 4)
+os.execvp(sys.argv[3], sys.argv[3:])
+"""
+"""The protocol's two ends are file descriptors 3 and 4 by definition."""
 
 
 class Browser:
@@ -31,10 +41,12 @@ class Browser:
             "about:blank",
         ]
         self._log = (profile.parent / "chromium.log").open("wb")
-        # The protocol's two ends are file descriptors 3 and 4 by definition.
-        shell = ["/bin/sh", "-c", f'exec "$@" 3<&{to_child} 4>&{from_child}', "sh", *words]
         self._process = subprocess.Popen(
-            shell, pass_fds=(to_child, from_child), stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log
+            [sys.executable, "-c", _PLUG, str(to_child), str(from_child), *words],
+            pass_fds=(to_child, from_child),
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=self._log,
         )
         os.close(to_child)
         os.close(from_child)

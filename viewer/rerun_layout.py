@@ -56,14 +56,15 @@ def _policies() -> rrb.Container:
 
 
 def _fast_plots() -> rrb.Container:
+    angles = rrb.ScalarAxis(range=(-110.0, 110.0))
     window = rr.VisibleTimeRange(
         TIMELINE,
         start=rrb.TimeRangeBoundary.cursor_relative(seconds=-_WINDOW_S),
         end=rrb.TimeRangeBoundary.cursor_relative(),
     )
     return rrb.Tabs(
-        rrb.TimeSeriesView(origin="head", name="pan, tilt", time_ranges=[window]),
-        rrb.TimeSeriesView(origin="percept", name="percept", time_ranges=[window]),
+        rrb.TimeSeriesView(origin="head", name="pan, tilt", time_ranges=[window], axis_y=angles),
+        rrb.TimeSeriesView(origin="percept", name="percept", time_ranges=[window], axis_y=angles),
         rrb.TimeSeriesView(origin="drive", name="drive", time_ranges=[window]),
         rrb.TimeSeriesView(origin="latency_ms", name="latency", time_ranges=[window]),
         rrb.TimeSeriesView(origin="lost", name="losses"),
@@ -71,7 +72,8 @@ def _fast_plots() -> rrb.Container:
 
 
 def _slow_plots() -> rrb.Container:
-    whole = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.Independent)
+    always = rr.TimeRange(start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.infinite())
+    whole = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.Independent, view_range=always)
     return rrb.Tabs(
         rrb.TimeSeriesView(
             origin="learning",

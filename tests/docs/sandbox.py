@@ -10,7 +10,7 @@ from tests.docs.page import ROOT, Block
 
 _OWN = ("schemas", "recordings", "launch")
 """Folders that the pages write into."""
-_SHARED = ("components", "docking", "runtime", "cli", "experiments", "report")
+_SHARED = ("components", "docking", "runtime", "cli", "experiments", "report", "viewer")
 
 
 class Sandbox:
