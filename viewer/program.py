@@ -9,6 +9,7 @@ import json
 import os
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -25,6 +26,12 @@ from viewer.loopback import HOST, free_port
 _READY_S = 30.0
 _POLL_S = 0.02
 _GRACE_S = 3.0
+_TIED = """
+import ctypes, os, signal, sys
+ctypes.CDLL(None).prctl(1, signal.SIGTERM)
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+"""Linux ends it when this process ends, however that ends (PR_SET_PDEATHSIG)."""
 
 
 class Program:
@@ -48,7 +55,7 @@ class Program:
             self._log = Path(home) / "rerun.log"
             with self._log.open("wb") as log:
                 self._process = subprocess.Popen(  # noqa: S603  (the wheel's own program)
-                    [str(_program()), *words, *ends, *limits, "--hide-welcome-screen"],
+                    [sys.executable, "-c", _TIED, str(_program()), *words, *ends, *limits, "--hide-welcome-screen"],
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,

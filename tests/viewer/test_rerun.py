@@ -164,6 +164,22 @@ def test_a_program_that_was_killed_is_over_and_leaves_nothing_behind():
     assert not home.exists()
 
 
+def children(pid):
+    return [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def test_a_command_that_is_killed_leaves_no_server_behind():
+    watching = berth("view", RECORDINGS / "docking.mcap", "--web", "--no-open", "--port", "0")
+    assert "showing" in watching.stderr.readline()
+    (server,) = children(watching.pid)
+    watching.kill()
+    watching.communicate(timeout=DEADLINE_S)
+    until_s = time.monotonic() + 30.0
+    while Path(f"/proc/{server}/exe").exists():
+        assert time.monotonic() < until_s
+        time.sleep(0.01)
+
+
 def test_without_a_display_one_line_says_what_to_do_instead(monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
