@@ -1,5 +1,6 @@
 """Two sessions side by side."""
 
+import copy
 import dataclasses
 import math
 
@@ -17,19 +18,44 @@ def test_the_interval_of_a_difference_is_newcombes():
     assert all(map(math.isnan, newcombe((0, 0), (1, 1))))
 
 
+def changed(session, component, **params):
+    """The same session, as if it had been run with other parameters."""
+    launch = copy.deepcopy(session.launch)
+    spec = next(spec for spec in launch["components"] if spec["name"] == component)
+    spec["params"].update(params)
+    return dataclasses.replace(session, launch=launch)
+
+
 @pytest.fixture(scope="module")
-def pair():
-    return read(FOLDER / "reverse.mcap"), read(FOLDER / "lost.mcap")
+def first():
+    return read(FOLDER / "reverse.mcap")
 
 
-def test_what_was_set_differently_is_named_as_it_is_set(pair):
-    assert dict(differences(*pair)) == {
-        "tracker.pan_gain_p": ("0.9", "0.05"),
+@pytest.fixture(scope="module")
+def pair(first):
+    return first, changed(first, "pilot", lost_s=1.0)
+
+
+def test_what_was_set_differently_is_named_as_it_is_set(first):
+    second = changed(changed(first, "pilot", lost_s=1.5, new="words"), "tracker", feed_forward=False)
+    second.launch["seed"] = 9
+    assert dict(differences(first, second)) == {
+        "pilot.lost_s": ("15", "1.5"),
+        "pilot.new": ("-", "words"),
         "tracker.feed_forward": ("true", "false"),
-        "pilot.reverse_turn_rate_radps": ("0.436332", "1"),
-        "pilot.lost_s": ("15", "1"),
+        "seed": (str(first.launch["seed"]), "9"),
     }
-    assert differences(pair[0], pair[0]) == []
+    assert differences(first, first) == []
+
+
+def test_a_parameter_of_the_task_is_one_difference_however_many_components_have_it(first, tmp_path):
+    second = copy.deepcopy(first)
+    for spec in second.launch["components"]:
+        if "task" in spec["params"]:
+            spec["params"]["task"]["speed_mps"] = 0.25
+    assert len(differences(first, second)) >= 3
+    write((Side(first, None), Side(second, None)), tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text(encoding="utf-8").count("speed_mps</td>") == 1
 
 
 def test_the_page_shows_differences_first_and_needs_nothing_else(pair, tmp_path):
