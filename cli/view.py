@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import sys
 import time
@@ -33,6 +34,8 @@ END = Annotated[bool, typer.Option("--at-end", help="Open a recording at its end
 OPEN = Annotated[bool, typer.Option("--open/--no-open", help="With --web: open the browser.")]
 _SIZE = re.compile(r"[1-9][0-9]{0,4}(MB|GB|%)")
 _POLL_S = 0.1
+_LIVE_S, _FILE_S = 0.05, 60.0
+"""How long a viewer that hangs is waited for; then it misses something."""
 
 
 def view(
@@ -93,6 +96,7 @@ def _check(wish: Wish) -> None:
 
 
 def _in_rerun(wish: Wish, run: Run | None, is_asked: Callable[[], bool]) -> None:
+    os.environ.setdefault("RUST_LOG", "off")  # else the SDK complains at length when a window is closed
     from viewer import live, recorded, rerun_session  # noqa: PLC0415  (a second, and only here)
 
     where: Path | Literal["web", "window"] = wish.save or ("web" if wish.web else "window")
@@ -102,7 +106,12 @@ def _in_rerun(wish: Wish, run: Run | None, is_asked: Callable[[], bool]) -> None
         run is not None or wish.at_end,
         _name(wish, run),
     )
-    with rerun_session.opened(where, name, wish.memory_limit, port=port, follow=follow) as (sink, url, is_closed):
+    patience_s = _LIVE_S if run is not None else _FILE_S
+    with rerun_session.opened(where, name, wish.memory_limit, port=port, follow=follow, patience_s=patience_s) as (
+        sink,
+        url,
+        is_closed,
+    ):
         _invite(url, name, open_browser=wish.open_browser)
 
         def is_over() -> bool:

@@ -148,4 +148,4 @@ def _silence(home: Path) -> dict[str, str]:
         "data_dir_path": str(home),
     }
     (folder / "analytics.json").write_text(json.dumps(table), encoding="utf-8")
-    return {"XDG_CONFIG_HOME": str(home), "TELEMETRY_ENABLED": "false", "NO_COLOR": "1"}
+    return {"XDG_CONFIG_HOME": str(home), "TELEMETRY_ENABLED": "false", "NO_COLOR": "1", "RUST_LOG": "warn"}

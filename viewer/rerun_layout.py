@@ -56,6 +56,10 @@ def _policies() -> rrb.Container:
 
 
 def _fast_plots() -> rrb.Container:
+    newest = rr.TimeRange(
+        start=rrb.TimeRangeBoundary.cursor_relative(seconds=-_WINDOW_S), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    moving = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.Independent, view_range=newest)
     angles = rrb.ScalarAxis(range=(-110.0, 110.0))
     window = rr.VisibleTimeRange(
         TIMELINE,
@@ -63,10 +67,10 @@ def _fast_plots() -> rrb.Container:
         end=rrb.TimeRangeBoundary.cursor_relative(),
     )
     return rrb.Tabs(
-        rrb.TimeSeriesView(origin="head", name="pan, tilt", time_ranges=[window], axis_y=angles),
-        rrb.TimeSeriesView(origin="percept", name="percept", time_ranges=[window], axis_y=angles),
-        rrb.TimeSeriesView(origin="drive", name="drive", time_ranges=[window]),
-        rrb.TimeSeriesView(origin="latency_ms", name="latency", time_ranges=[window]),
+        rrb.TimeSeriesView(origin="head", name="pan, tilt", time_ranges=[window], axis_x=moving, axis_y=angles),
+        rrb.TimeSeriesView(origin="percept", name="percept", time_ranges=[window], axis_x=moving, axis_y=angles),
+        rrb.TimeSeriesView(origin="drive", name="drive", time_ranges=[window], axis_x=moving),
+        rrb.TimeSeriesView(origin="latency_ms", name="latency", time_ranges=[window], axis_x=moving),
         rrb.TimeSeriesView(origin="lost", name="losses"),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ TIMELINE = "session"
 _ROWS = 512
 _BYTES = 2_000_000
 """An entity's rows are sent at the latest when they are so many or so large."""
+_UNCONFIRMED_BYTES = 8_000_000
+_ROW_BYTES = 100
+_FAREWELL_S = 5.0
 _PALETTE = ((31, 111, 235), (242, 140, 40), (26, 127, 55), (207, 34, 46), (130, 80, 223), (110, 119, 129))
 _SPARSE = frozenset({"learning", "lost", "policy_size"})
 _SERIES = 64
@@ -22,18 +26,24 @@ _SERIES = 64
 class RerunSink:
     """Writes to one Rerun recording."""
 
-    def __init__(self, recording: rr.RecordingStream, *, rows: int = _ROWS) -> None:
+    def __init__(self, recording: rr.RecordingStream, *, patience_s: float, rows: int = _ROWS) -> None:
         """Write to an open recording.
 
         Args:
             recording: connected to a viewer or a file.
+            patience_s: how long a viewer is waited for that does not take what it is sent; then it misses some.
             rows: collected per entity before they are sent unasked.
         """
         self._recording = recording
+        self._patience_s = patience_s
         self._rows = rows
         self._waiting: dict[tuple[str, type[Any]], list[Shown]] = {}
         self._bytes = 0
+        self._unconfirmed = 0
+        """Bytes sent, about, since the viewer is known to have taken all of it."""
         self._series: dict[str, list[str]] = {}
+        self.missed = 0
+        """Rows that the viewer was not sent."""
 
     def stands(self, entities: Mapping[str, What]) -> None:
         """Show what is there at all times."""
@@ -51,15 +61,32 @@ class RerunSink:
                 self.flush()
 
     def flush(self) -> None:
-        """Send what was collected."""
+        """Send what was collected, or forget it if the viewer hangs: the SDK would keep it all, without a bound."""
+        rows_count = sum(map(len, self._waiting.values()))
+        if self._keeps_up():
+            self._send()
+            self._unconfirmed += self._bytes + _ROW_BYTES * rows_count
+        else:
+            self.missed += rows_count
+        self._waiting.clear()
+        self._bytes = 0
+
+    def _keeps_up(self) -> bool:
+        if self._unconfirmed > _UNCONFIRMED_BYTES:
+            try:
+                self._recording.flush(timeout_sec=self._patience_s)
+            except RuntimeError:
+                return False
+            self._unconfirmed = 0
+        return True
+
+    def _send(self) -> None:
         for (entity, kind), rows in self._waiting.items():
             if kind is Number:
                 self._style(entity)
             times = rr.TimeColumn(TIMELINE, duration=np.array([row.time_ns for row in rows], "timedelta64[ns]"))
             columns = _COLUMNS[kind](entity, [row.what for row in rows])
             self._recording.send_columns(entity, indexes=[times], columns=columns)
-        self._waiting.clear()
-        self._bytes = 0
 
     def _style(self, entity: str) -> None:
         """A colour for each series of a plot, and points for those that have few."""
@@ -76,7 +103,8 @@ class RerunSink:
     def close(self) -> None:
         """Send the rest and wait until it is out."""
         self.flush()
-        self._recording.flush(timeout_sec=10.0)
+        with suppress(RuntimeError):  # the viewer has been closed
+            self._recording.flush(timeout_sec=_FAREWELL_S)
         self._recording.disconnect()
 
 

@@ -25,6 +25,7 @@ from viewer.loopback import HOST, free_port  # noqa: E402
 from viewer.program import native, served  # noqa: E402
 from viewer.recorded import opened, show  # noqa: E402
 from viewer.rerun_sink import TIMELINE, RerunSink  # noqa: E402
+from viewer.shown import Picture, Shown  # noqa: E402
 
 pytestmark = pytest.mark.xdist_group("live")
 RECORDINGS = Path(__file__).parents[2] / "recordings"
@@ -35,12 +36,16 @@ class Notebook:
     """A recording that writes down what it is sent."""
 
     def __init__(self):
-        self.columns, self.logged = {}, []
+        self.columns, self.logged, self.hangs = {}, [], False
 
     def send_columns(self, entity, indexes, columns):
         rows = [len(column.lengths()) if hasattr(column, "lengths") else None for column in columns]
         times = [list(np.asarray(index.as_arrow_array()).astype(int)) for index in indexes]
         self.columns.setdefault(entity, []).append((times, rows))
+
+    def flush(self, *, timeout_sec):
+        if self.hangs:
+            raise RuntimeError(timeout_sec)
 
     def log(self, entity, what, *, static):
         self.logged.append((entity, type(what).__name__, static))
@@ -49,7 +54,7 @@ class Notebook:
 @pytest.fixture(scope="module")
 def sent():
     notebook = Notebook()
-    sink = RerunSink(notebook, rows=50)
+    sink = RerunSink(notebook, patience_s=1.0, rows=50)
     show(*opened(RECORDINGS / "docking.mcap"), sink, lambda _: None)
     return notebook
 
@@ -67,6 +72,23 @@ def test_rows_are_sent_in_columns_not_one_by_one(sent):
 def test_what_stands_has_no_time(sent):
     for entity in ("plan/table", "plan/edge", "plan/can", "plan/goal"):
         assert [times for times, _ in sent.columns[entity]] == [[]]
+
+
+def test_a_viewer_that_hangs_is_sent_no_more_until_it_goes_on():
+    notebook = Notebook()
+    sink = RerunSink(notebook, patience_s=0.0)
+    picture = Picture(bytes(1_000_000), "jpeg")
+    notebook.hangs = True
+    for number in range(100):
+        sink.show([Shown("camera/image", number, picture)])
+        sink.flush()
+    sent_before = len(notebook.columns["camera/image"])
+    assert 8 <= sent_before < 12
+    assert sink.missed == 100 - sent_before
+    notebook.hangs = False
+    sink.show([Shown("camera/image", 100, picture)])
+    sink.flush()
+    assert len(notebook.columns["camera/image"]) == sent_before + 1
 
 
 def test_each_series_of_a_plot_has_a_colour_once(sent):
