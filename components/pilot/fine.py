@@ -25,10 +25,11 @@ _ASIDE_RAD, _ASKEW_RAD = math.radians(15.0), math.radians(30.0)
 
 
 def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sight) -> Step:
-    """The policy's action, or where it knows none the law's; held for some frames, then chosen anew."""
+    """The policy's action, held for some frames; the law's where it knows none, or base refuses its way back."""
     held = progress.held
-    backwards = held.v_mps < 0.0 and policy.back_samples > 0
-    if 0 < _held_frames(progress) < (policy.back_samples if backwards else rules.params.fine_hold_samples):
+    back = held.v_mps < 0.0
+    frames = policy.back_samples if back and policy.back_samples else rules.params.fine_hold_samples
+    if 0 < _held_frames(progress) < frames and not (back and progress.hindered):
         wish = Wish(held.v_mps, held.omega_radps, held.controller, held.action)
         return remembered(progress, held.v_mps, held.omega_radps), wish
     ahead = _ahead(rules, policy, progress, sight)
@@ -36,7 +37,7 @@ def steer_fine(rules: Rules, policy: GridPolicy, progress: Progress, sight: Sigh
         progress = replace(progress, forecast=forecast(rules, policy, _state(sight)))
     action = int(policy.act(ahead, exploring=progress.phase == Phase.TRAIN)[0])
     controller, cell = "greedy", rules.grid.cell(sight.beta_rad, sight.alpha_rad)
-    if action == UNKNOWN:
+    if action == UNKNOWN or (progress.hindered and policy.actions[action][0] < 0.0):
         controller, action = "lc", lawful_action(rules.teacher, sight.beta_rad, sight.alpha_rad, policy.actions)
     v, omega = policy.actions[action]
     progress = replace(progress, held=Held(cell, action, v, omega, controller))

@@ -141,6 +141,8 @@ class Progress:
     """Where the reverse shall end."""
     sent: tuple[float, ...] = ()
     """Speed and turn rate of the newest frames of this approach, m/s and rad/s by turns, the newest last."""
+    hindered: bool = False
+    """Base has lately refused to drive backwards."""
     turning: bool = False
     """The reverse has gone back far enough and turns on the spot."""
     seen_alpha_rad: float = 0.0

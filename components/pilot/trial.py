@@ -20,6 +20,8 @@ from docking.policy import PolicyTable
 
 _STILL_MPS, _STILL_RADPS = 0.01, 0.02
 """A base slower than this stands still."""
+_HINDERED_S = 5.0
+"""For so long after base has refused the way back, no policy asks for it again."""
 _UNGRASPED = Wish(engaged=False)
 
 
@@ -58,7 +60,8 @@ def begin(progress: Progress, time_ns: int, number: int) -> Progress:
 def go_on(rules: Rules, progress: Progress, frame: Frame) -> Step:
     """One frame of the trial."""
     seen_ns = frame.time_ns if frame.sight.visible else progress.seen_ns
-    progress = replace(progress, answered_ns=frame.time_ns, seen_ns=seen_ns)
+    hindered = frame.heard.hindered_ns >= 0 and _since(frame, frame.heard.hindered_ns) < _HINDERED_S
+    progress = replace(progress, answered_ns=frame.time_ns, seen_ns=seen_ns, hindered=hindered)
     progress = diagnosis.watched(rules, progress, frame.sight, frame.heard, frame.time_ns)
     progress, wish = _MODES[progress.mode](rules, progress, frame)
     if progress.over:

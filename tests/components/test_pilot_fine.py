@@ -8,6 +8,7 @@ import pytest
 
 from components.learner.perception import limits_of
 from components.learner.planner import Planner, axes_of
+from components.pilot.component import Pilot
 from components.pilot.landing import has_landed, land
 from components.pilot.ports import Params
 from components.pilot.rules import Rules
@@ -18,8 +19,9 @@ from docking.plant import observe
 from docking.policy import UNKNOWN, PolicyTable
 from docking.rates import RateModel
 from docking.task import Task
+from schemas.drive_pb2 import Applied
 from schemas.trial_pb2 import Trial
-from tests.components.piloting_world import DEG, HEIGHT_M, drive
+from tests.components.piloting_world import DEG, HEIGHT_M, drive, frame, percept, tell
 
 BACK_SAMPLES = 12
 ROOM_RAD = (80 * DEG, 95 * DEG)
@@ -120,3 +122,15 @@ def test_landing_docks_from_wherever_it_takes_over(beta_deg, alpha_deg):
 def _pose(start):
     beta, alpha, d = start
     return -d * math.cos(beta), -d * math.sin(beta), beta - alpha
+
+
+def test_where_base_refuses_the_way_back_the_law_drives_on():
+    pilot = Pilot(Params(task=task("reverse"), train_s=0.0, policy=planned("reverse")), 1)
+    aside = percept(0.5, 0.9, math.atan2(HEIGHT_M, 0.6))
+    for k in range(4):
+        wished, *_ = frame(pilot, k, aside)
+    assert wished.v_mps < 0.0
+    tell(pilot, "applied", Applied(commander="fence"), 3)
+    driven, trial, _ = frame(pilot, 4, aside)
+    assert driven.v_mps > 0.0
+    assert trial.controller == "lc"
