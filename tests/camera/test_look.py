@@ -1,19 +1,26 @@
 """`launch/look.toml` as its comments say: one # taken away, and `berth run`."""
 
-import json
 import secrets
 import shutil
+import time
+from collections import deque
 from pathlib import Path
 
 import pytest
 
+from cli.on_bus import _take_all
+from cli.progress import Progress
+from cli.session import Watch
+from runtime.launch import load
 from runtime.recording import Recording
-from tests.cli.running import berth, finish
+from runtime.supervise import Supervisor
+from schemas.session_pb2 import RecorderAck
 
 ROOT = Path(__file__).parents[2]
-pytestmark = pytest.mark.xdist_group("session")
+DEADLINE_S = 90.0
 
 
+@pytest.mark.xdist_group("session")
 def test_a_folder_of_images_is_looked_at_and_recorded(tmp_path):
     images = tmp_path / "images"
     shutil.copytree(ROOT / "tests" / "photographs", images)
@@ -26,14 +33,21 @@ def test_a_folder_of_images_is_looked_at_and_recorded(tmp_path):
         text = text.replace(before, after)
     launch = tmp_path / "look.toml"
     launch.write_text(text, encoding="utf-8")
-    words = ["--only", "camera,vision,recorder", "--duration", "3", "--record", tmp_path / "seen.mcap", "--json"]
-    code, out, err = finish(berth("run", launch, *words))
-    assert code == 0, err
-    assert json.loads(out)["exit_reason"] == "duration"
-    recording = Recording(tmp_path / "seen.mcap")
-    shown = [logged.decoded().data for logged in recording.messages({"camera/image"})]
-    assert len(shown) >= 4
-    assert set(shown) <= {file.read_bytes() for file in images.glob("*.jpg")}
-    views = [logged.decoded() for logged in recording.messages({"vision/view"})]
-    assert len(views) >= 4
+    supervisor, views = Supervisor(load(launch, recording=tmp_path / "seen.mcap")), []
+    supervisor.watch("vision/view", lambda view, _: views.append(view))
+    until_s = time.monotonic() + DEADLINE_S
+    with supervisor:
+        while len(views) < 12:
+            assert supervisor.poll(0.05), supervisor.end_reason
+            assert time.monotonic() < until_s, supervisor.missing
+        supervisor.stop()
     assert not any(view.fault or view.object_visible for view in views)
+    shown = {logged.decoded().data for logged in Recording(tmp_path / "seen.mcap").messages({"camera/image"})}
+    assert len(shown) >= 4
+    assert shown <= {file.read_bytes() for file in images.glob("*.jpg")}
+
+
+def test_where_nobody_tells_of_trials_the_recorder_tells_how_long_the_session_is():
+    watch = Watch(Progress("", quiet=True))
+    _take_all(watch, deque([(RecorderAck(messages=7), 3_000_000_000), (RecorderAck(messages=8), 2_000_000_000)]))
+    assert (watch.board.robot_s, watch.messages) == (3.0, 8)
