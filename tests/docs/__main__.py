@@ -29,8 +29,8 @@ def main() -> int:
         clone = Path(name) / "berth"
         subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
         chosen = [clone / name for name in sys.argv[1:]] or pages(clone)
-        setup = next(block for block in blocks(clone / "docs/tutorial.md") if block.mark == "setup")
-        kept = [run(setup, clone), *(follow(page, clone) for page in chosen)]
+        setup = [block for block in blocks(clone / "docs/tutorial.md") if block.mark == "setup"]
+        kept = [*(run(block, clone) for block in setup), *(follow(page, clone) for page in chosen)]
     return 0 if all(kept) else 1
 
 
@@ -59,11 +59,11 @@ def run(block: Block, clone: Path) -> bool:
     except subprocess.TimeoutExpired:
         code = interrupt(process)
         code = code if stopped else -1
-    state = "ok" if code == 0 else f"FAILED ({code})"
+    state = "ok" if code == block.code else f"FAILED ({code})"
     say(f"  {state:11} {time.monotonic() - began_s:6.1f} s  {block.commands.splitlines()[0]}")
-    if code:
+    if code != block.code:
         say((clone.parent / "said.log").read_text(errors="replace")[-4000:])
-    return code == 0
+    return code == block.code
 
 
 def start(block: Block, clone: Path) -> "subprocess.Popen[bytes]":

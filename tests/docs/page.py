@@ -5,6 +5,7 @@ A comment right above a block of commands says how the checks treat it:
 `<!-- setup -->` needs a fresh clone, so only `make docs-check` runs it;
 `<!-- stopped after 20 s -->` it goes on until Ctrl-C, which comes then;
 `<!-- in the background -->` it goes on until the page is done;
+`<!-- exit code 1: why -->` it ends with that;
 `<!-- not run: why -->` it is only parsed.
 """
 
@@ -18,7 +19,7 @@ _BLOCK = re.compile(
     r"(?:^<!-- (?P<mark>[^\n]*?) -->\n)?^```(?P<kind>\w+)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 _FILE = re.compile(r"(?:#|//) ([\w/]+\.(?:py|proto|toml))\n")
-MARKS = ("shortened: ", "setup", "stopped after ", "in the background", "not run: ")
+MARKS = ("shortened: ", "setup", "stopped after ", "in the background", "exit code ", "not run: ")
 STANDS_FOR = {
     "recordings/SESSION.mcap": "recordings/docking.mcap",
     "tcp/ROBOT:": "tcp/127.0.0.1:",
@@ -44,6 +45,12 @@ class Block:
     @property
     def is_run(self) -> bool:
         return self.kind == "sh" and not self.mark.startswith("not run")
+
+    @property
+    def code(self) -> int:
+        """Exit code to be had."""
+        found = re.match(r"exit code (\d)", self.mark)
+        return int(found[1]) if found else 0
 
     @property
     def commands(self) -> str:

@@ -42,5 +42,5 @@ class Sandbox:
             timeout=deadline_s,
             check=False,
         )
-        assert done.returncode == 0, f"{block.shortened}\n{done.stdout}\n{done.stderr}"
+        assert done.returncode == block.code, f"{block.shortened}\n{done.stdout}\n{done.stderr}"
         return done.stdout + done.stderr
