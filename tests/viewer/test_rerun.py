@@ -19,6 +19,7 @@ from tests.cli.running import berth, finish
 
 rr = pytest.importorskip("rerun", reason="Rerun is not installed: make setup-view")
 
+from viewer import rerun_session  # noqa: E402
 from viewer.camera import OBJECT  # noqa: E402
 from viewer.front import Front  # noqa: E402
 from viewer.loopback import HOST, free_port  # noqa: E402
@@ -99,8 +100,9 @@ def test_each_series_of_a_plot_has_a_colour_once(sent):
 
 def test_a_file_for_the_viewer_holds_the_session_and_the_layout(tmp_path):
     file = tmp_path / "docking.rrd"
-    code, _, err = finish(berth("view", RECORDINGS / "docking.mcap", "--save", file))
-    assert code == 0, err
+    with rerun_session.opened(file, "docking", "1GB", port=0, follow=False, patience_s=60.0) as (sink, url, is_closed):
+        show(*opened(RECORDINGS / "docking.mcap"), sink, lambda _: None)
+        assert (url, is_closed()) == ("", False)
     program = Path(sys.prefix) / "bin" / "rerun"
     said = subprocess.run([program, "rrd", "stats", file], capture_output=True, text=True, check=True).stdout
     for entity in ("/camera/image:", "/plan/robot:", "/log/trials:", "/learning/lc:", "/viewport:", "/time_panel:"):
