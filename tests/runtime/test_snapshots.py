@@ -23,7 +23,7 @@ pytestmark = pytest.mark.xdist_group("live")
 
 @pytest.fixture(scope="module")
 def restarted(tmp_path_factory) -> Path:
-    """A live session whose scholar is killed after a snapshot, and started again."""
+    """A session whose scholar is killed when the recorder has had time to hear a snapshot, and started again."""
     directory = tmp_path_factory.mktemp("restarted")
     more = 'restart = "on-failure"\nparams = { every = 200 }  # it is killed long before the next one is under way'
     words = ["world.frames=0", "world.window=16"]
@@ -31,8 +31,10 @@ def restarted(tmp_path_factory) -> Path:
     supervisor = Supervisor(system)
     snapshots: list[int] = []
     supervisor.watch("scholar/snapshot", lambda snapshot, _: snapshots.append(snapshot.version))
+    drives: list[int] = []
+    supervisor.watch("scholar/drive", lambda *_: drives.append(len(snapshots)))
     with supervisor:
-        run_until(supervisor, lambda: bool(snapshots))
+        run_until(supervisor, lambda: sum(map(bool, drives)) > 50)
         os.kill(supervisor.pids["scholar"], signal.SIGKILL)
         run_until(supervisor, lambda: bool(supervisor.deaths))
         known = len(snapshots)
