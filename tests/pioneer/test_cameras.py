@@ -155,6 +155,7 @@ def test_a_slow_camera_that_stands_is_known_at_once_and_is_not_moved_for_little(
     assert quick[0][-1] == pytest.approx(9.0, abs=0.1)
     assert np.median(slow[2]) < 0.1
     assert np.max(slow[2]) < 0.7, "while it moves: one answer to the move, one to the question"
+    assert np.max(slow[2][len(slow[2]) // 2 :]) < 0.25, "once it has done as told three times in a row"
 
 
 def test_a_camera_that_somebody_turns_is_seen_to_be_elsewhere():

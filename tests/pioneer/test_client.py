@@ -172,6 +172,20 @@ def test_a_silence_of_ours_ends_with_rest_before_anything_else():
     assert rig.v_mps == 0.0
 
 
+def test_after_a_pause_of_ours_rest_comes_first_though_a_new_command_has_come():
+    rig = Rig(watchdog_ms=400).connected()
+    rig.wish = Wish(0.1)
+    rig.run(2.0)
+    for _ in range(38):  # 0.6 s, in which nobody looks at the line
+        rig.now_ns += STEP_NS
+        rig.body.step()
+    assert rig.v_mps < 0.09, "its own watchdog"
+    rig.robot.received.clear()
+    rig.client.command(Wish(0.1), rig.now_ns)
+    rig.run(0.1)
+    assert rig.heard(*range(256))[:2] == [(Command.VEL, 0), (Command.RVEL, 0)]
+
+
 def test_a_robot_that_was_left_driving_is_stopped_closed_and_opened():
     rig = Rig().connected()
     rig.wish = Wish(0.1)
@@ -228,6 +242,7 @@ def test_the_stop_button_holds_until_a_person_switches_the_motors_on():
 def test_a_slow_watchdog_is_told_and_limits_the_speed():
     rig = Rig(Pioneer(unattended_m=0.2)).connected()
     assert any("watchdog is 2000 ms" in words for words in rig.client.words)
+    assert rig.readings[-1].watchdog_s == 2.0
     rig.wish = Wish(0.3)
     rig.run(2.0)
     assert rig.v_mps == pytest.approx(0.1, abs=1e-3)

@@ -52,6 +52,7 @@ def test_a_robot_is_driven_and_stopped_at_the_end(served):
     driven = Driven(Pioneer(port=served.end.port)).ready()
     driven.v_mps = 0.1
     driven.until(lambda: driven.state.v_mps > 0.09)
+    assert driven.state.watchdog_s == 2.0
     driven.device.close()
     end_s = time.monotonic() + DEADLINE_S
     while served.v_mps:
