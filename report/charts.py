@@ -224,7 +224,8 @@ def promises(found: Sequence[Promise]) -> Figure:
     chart.dots(kept, "a")
     chart.crosses([(promised, 0.97 * top) for promised in broken], "bad")
     error_s = float(np.median([abs(a - b) for a, b in kept])) if kept else math.nan
-    note = f"Time to the goal cell. Median error {error_s:.1f} s." if kept else "No promise was kept."
+    where = "pick-up, as the pilot forecast it" if any(p.is_forecast for p in found) else "goal cell, by its value"
+    note = f"Time to the {where}. Median error {error_s:.1f} s." if kept else "No promise was kept."
     keys = [Key("a", f"promised and reached ({len(kept)})"), Key("bad", f"promised, not reached ({len(broken)})")]
     return Figure("What the policy promised, and what happened", chart, keys, note)
 

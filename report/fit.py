@@ -1,8 +1,9 @@
 """How well what was learned predicts what happens: the time that a policy's value promises, and motion a second ahead.
 
-The promise is the value of the cell in which the policy began to drive: the goal's reward less one for each sampling
-period to go, less what the risk of failing costs. The motion is that of a policy that knows how percepts move: from
-each percept the commands that were executed are followed for a second.
+The promise is what the pilot forecasts of a trial, or, where it makes no forecast, the value of the cell in which the
+policy began to drive: the goal's reward less one for each sampling period to go, less what the risk of failing costs.
+The motion is that of a policy that knows how percepts move: from each percept the commands that were executed are
+followed for a second.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ from schemas.drive_pb2 import Applied
 from schemas.percept_pb2 import Percept
 from schemas.trial_pb2 import Trial
 
+_LIKELY = 0.5
+"""Share from which on a forecast promises the pick-up; as in `report.forecast`."""
 _RECENT = 8
 """Policies kept: the pilot acts on one of the newest."""
 _AHEAD = 8
@@ -45,8 +48,10 @@ class Promise:
     """Time to the goal by its value; NaN where it promised no goal."""
     began_s: float
     phase: str
+    is_forecast: bool = False
+    """It is about the pick-up pose; else about the goal cell."""
     ended_s: float = math.nan
-    """When the goal was reached; NaN if it was not."""
+    """When the robot was there; NaN if it never was."""
 
     @property
     def took_s(self) -> float:
@@ -109,8 +114,6 @@ class FitReader:
 
     def take(self, message: Trial | Percept, capture_ns: int) -> None:
         """Take one sane message."""
-        if not self._newest:
-            return
         if isinstance(message, Trial):
             pair = self._pairs.first(capture_ns, message)
         else:
@@ -127,9 +130,16 @@ class FitReader:
         at_s = capture_ns * 1e-9
         if self._open is not None and trial.began_ns == self._open[0]:
             promise = self._open[1]
-            if math.isnan(promise.ended_s) and trial.goal_reached:
+            if math.isnan(promise.ended_s) and (
+                trial.mode == Trial.GRASP if promise.is_forecast else trial.goal_reached
+            ):
                 promise.ended_s = at_s
         is_new = self._open is None or trial.began_ns != self._open[0]
+        forecasts = trial.dock_share > 0.0 and trial.phase == Trial.EVALUATE  # training ends in the goal cell
+        if is_new and forecasts and trial.mode in _DRIVING:
+            promised_s = trial.dock_s if trial.dock_share >= _LIKELY else math.nan
+            self._promise(trial, Promise(promised_s, at_s, Trial.Phase.Name(trial.phase), is_forecast=True))
+            is_new = False
         begins = is_new and trial.controller == "greedy" and trial.mode == Trial.APPROACH
         if not (begins or (self._knows_motion and trial.mode in _DRIVING)):
             return
@@ -146,8 +156,11 @@ class FitReader:
             return  # where the distance is known, the cells' values are a picture at one distance
         value = float(table.value[cell])
         promised_s = (self._goal_reward - value) * self._period_s if value > 0.0 else math.nan
-        self._open = trial.began_ns, Promise(promised_s, at_s, Trial.Phase.Name(trial.phase))
-        self._promises.append(self._open[1])
+        self._promise(trial, Promise(promised_s, at_s, Trial.Phase.Name(trial.phase)))
+
+    def _promise(self, trial: Trial, promise: Promise) -> None:
+        self._open = trial.began_ns, promise
+        self._promises.append(promise)
 
     def _table_of(self, version: int) -> PolicyTable | None:
         if version not in self._tables:

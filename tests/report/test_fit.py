@@ -79,6 +79,21 @@ def test_a_value_of_zero_promises_nothing_and_a_goal_that_is_not_reached_takes_f
     assert drive(reader(policy(200.0)), 20).kept == []
 
 
+@pytest.mark.parametrize(("share", "promised_s"), [(0.97, 12.0), (0.2, math.nan)])
+def test_a_forecast_is_about_the_pick_up_and_goes_before_the_cells(share, promised_s):
+    fit = reader(policy(REWARD - 80))
+    for k in range(120):
+        mode = Trial.APPROACH if k < 90 else Trial.SERVO if k < 100 else Trial.GRASP
+        trial = Trial(phase=Trial.EVALUATE, mode=mode, controller="greedy", policy_version=3, began_ns=1)
+        trial.goal_reached = k > 80
+        trial.dock_share, trial.dock_s = share, 12.0
+        fit.take(trial, k * FRAME_NS)
+        fit.take(percept(0.3, 0.2, 1.0), k * FRAME_NS)
+    (promise,) = fit.fit().promises
+    assert promise.promised_s == pytest.approx(promised_s, nan_ok=True)
+    assert promise.took_s == pytest.approx(12.5)
+
+
 @pytest.mark.parametrize("other", [{"version": 2}, {"controller": "lc"}])
 def test_only_a_policy_that_is_in_the_file_and_drives_promises(other):
     assert drive(reader(policy(200.0)), 20, **other).promises == []
