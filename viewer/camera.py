@@ -67,8 +67,16 @@ def _edge(view: View, width: int, height: int) -> tuple[tuple[Point, ...], ...]:
     if not (view.edge_visible and math.isfinite(view.edge_slope) and math.isfinite(view.edge_v_px)):
         return ()
     column = view.object_u_px + width / 2 if view.object_visible else width / 2
-    row = view.edge_v_px + height / 2
-    return (((0.0, row - view.edge_slope * column), (float(width), row + view.edge_slope * (width - column))),)
+    row, slope = view.edge_v_px + height / 2, view.edge_slope
+    left, right = 0.0, float(width)
+    if slope != 0.0:  # as far as it is in the image, or the viewer would make room for the rest
+        top, bottom = sorted((column - row / slope, column + (height - row) / slope))
+        left, right = max(left, top), min(right, bottom)
+    elif not 0.0 <= row <= height:
+        return ()
+    if not left < right:
+        return ()
+    return (((left, row + slope * (left - column)), (right, row + slope * (right - column))),)
 
 
 def _cross(column: float, row: float) -> tuple[tuple[Point, ...], ...]:

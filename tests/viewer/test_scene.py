@@ -79,6 +79,20 @@ def test_the_edge_is_drawn_through_its_row_at_the_objects_column_with_its_slope(
     assert left[1] + 0.25 * 180 == pytest.approx(110)
 
 
+@pytest.mark.parametrize("slope", [-40.0, -1.5, 0.0, 1e-9, 0.9, 7.0])
+@pytest.mark.parametrize("row", [-300, -20, 0, 90, 300])
+def test_the_edge_ends_where_the_image_does(slope, row):
+    camera = Camera(1)
+    data = cv2.imencode(".jpg", np.zeros((240, 320, 3), np.uint8))[1].tobytes()
+    camera.view(View(edge_visible=True, edge_slope=slope, edge_v_px=row), 7)
+    strips = of(camera.image(CompressedImage(data=data), 7, 0), "camera/image/edge")[0].what.strips
+    for u, v in (point for strip in strips for point in strip):
+        assert -1e-6 <= u <= 320 + 1e-6
+        assert -1e-6 <= v <= 240 + 1e-6
+        assert v - 120 - row == pytest.approx(slope * (u - 160), abs=1e-3)
+    assert strips or abs(row) == 300
+
+
 def test_images_are_shown_at_a_bounded_rate_and_no_mark_without_its_image():
     _, shown = shown_of(RECORDINGS / "docking.mcap", picture_ns=8 * FRAME_NS)
     times = [each.time_ns for each in of(shown, "camera/image")]
