@@ -83,6 +83,8 @@ def _docks(session: Session) -> Tile:
     picked = sum(trial.picked for trial in trials)
     likely = percent_range(docked, len(trials))
     words = f"trials of the {phase} docked: {meant}. 95 % interval {likely}; {picked} picked up."
+    if not enough:
+        words = f"{words} Too few trials to be sure."
     if phase == "training":
         mark, words = "none", f"{words} Training is not meant to dock."
     return Tile(question, f"{docked} of {len(trials)}", mark, words)
