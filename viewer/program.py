@@ -73,7 +73,7 @@ class Program:
                 if probe.connect_ex((HOST, port)) == 0:
                     return
             time.sleep(_POLL_S)
-        raise ConfigurationError(f"the viewer does not start: {self.last_words or 'it says nothing'}")
+        raise ConfigurationError(f"the viewer does not start: {self.complaint}")
 
     @property
     def pid(self) -> int:
@@ -87,14 +87,23 @@ class Program:
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended: a person has closed it, or it has failed."""
-        return self._process.poll() is not None
+        """Whether it has ended because a person has closed it.
+
+        Raises:
+            ConfigurationError: it has failed.
+        """
+        code = self._process.poll()
+        if code:
+            raise ConfigurationError(f"the viewer has ended: {self.complaint}; --web and --save need no display")
+        return code is not None
 
     @property
-    def last_words(self) -> str:
-        """The last line of its log."""
-        lines = self._log.read_text(errors="replace").split("\n") if self._log.exists() else []
-        return next((line.strip()[:300] for line in reversed(lines) if line.strip()), "")
+    def complaint(self) -> str:
+        """What it says of its failure."""
+        text = self._log.read_text(errors="replace") if self._log.exists() else ""
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        worst = next((line for line in lines if line.startswith("Error") or "panicked" in line), "")
+        return (worst or (lines or ["it says nothing"])[-1])[:300]
 
     def _stop(self) -> None:
         self._process.terminate()

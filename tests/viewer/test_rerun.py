@@ -175,17 +175,30 @@ def test_a_port_that_is_taken_is_named(front):
         Front(port_of(front[0].url), 1, 2)
 
 
-def test_a_program_that_was_killed_is_over_and_leaves_nothing_behind():
+def test_a_program_that_fails_is_told_of_and_leaves_nothing_behind():
     program, _ = served("50MB")
     with program:
         home = program._log.parent
         assert not program.is_over
+        program._log.write_text("WARN of something\nError: no graphics\n  0: backtrace\n")
         os.kill(program.pid, signal.SIGKILL)
-        until_s = time.monotonic() + 30.0
-        while not program.is_over:
-            assert time.monotonic() < until_s
-            time.sleep(0.01)
+        with pytest.raises(ConfigurationError, match="the viewer has ended: Error: no graphics; --web and --save need"):
+            wait_for(lambda: program.is_over)
     assert not home.exists()
+
+
+def wait_for(condition):
+    until_s = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < until_s
+        time.sleep(0.01)
+
+
+def test_a_display_that_is_none_is_told_of_in_one_line(monkeypatch):
+    monkeypatch.setenv("DISPLAY", ":4711")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(ConfigurationError, match=r"the viewer .*: Error: .*X server"), native("50MB") as program:
+        wait_for(lambda: program.is_over)
 
 
 def children(pid):
