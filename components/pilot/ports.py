@@ -80,7 +80,7 @@ class Params:
     servo_tolerance_rad: float = positive(0.7 * DEG)
     """The goal's tilt is met within this; 8 mm."""
     camera_height_m: float = positive(0.45)
-    """Of the camera above the object, and the next one: for the watchdog of the robot alone, if base tells of a slow one.
+    """Of the camera above the object and the next one; only for the watchdog of the robot, if base tells of a slow one.
     Towards the table no faster than that the robot would stop before it by itself, if its computer died."""
     table_room_m: float = between(0.04, 0.0, 1.0)
     """Beyond the task's `tilt_limit_rad` the gripper is still so far from the table. In simulation: 0.042."""
