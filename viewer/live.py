@@ -73,6 +73,7 @@ def _show(
         if now_ns >= due_ns:
             due_ns = now_ns + _FLUSH_NS
             sink.flush()
+    sink.show(scene.pages())
 
 
 def _clock(session: Assignment) -> Callable[[Arrival, int], int]:

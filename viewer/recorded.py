@@ -57,4 +57,5 @@ def show(recording: Recording, scene: Scene, sink: Sink, told: Callable[[float],
         sink.show(scene.take(logged, logged.capture_ns))
         if number % _TOLD == 0:
             told(logged.capture_ns / SECOND_NS)
+    sink.show(scene.pages())
     sink.flush()

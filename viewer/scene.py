@@ -93,7 +93,7 @@ class Scene:
         else:
             shown += handlers[type(message)](message, logged.capture_ns) + self._age(logged)
         if self._page.passes(now_ns):
-            shown += self._pages()
+            shown += self.pages()
         return [each for each in shown if not _is_nonsense(each)]
 
     def _percept(self, message: Percept, capture_ns: int) -> list[Shown]:
@@ -129,7 +129,8 @@ class Scene:
         age_ms = (logged.time_ns - logged.capture_ns) / 1e6
         return [Shown(f"latency_ms/{logged.topic.replace('/', '_')}", logged.capture_ns, Number(age_ms))]
 
-    def _pages(self) -> list[Shown]:
+    def pages(self) -> list[Shown]:
+        """The tables as they stand: the last word of a session."""
         return [
             Shown("processes", self._newest_ns, Page(self._processes.table())),
             Shown("session", self._newest_ns, Page(self.summary())),
