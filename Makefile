@@ -7,7 +7,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 .PHONY: demo test setup setup-view setup-dev lint docs docs-check schemas lock bench clean
 
 demo: setup  ## the main job: a simulated robot learns to dock, from camera images
-	$(BIN)/berth run launch/sim.toml
+	$(BIN)/berth run launch/minutes.toml
 
 test: setup-dev lint  ## lint, types and tests
 	$(BIN)/pytest

@@ -37,8 +37,9 @@ from runtime.wishes import EPOCH, GO_ON, PAUSE, Wishes
 from schemas.session_pb2 import Hold, Status
 
 NAME = "supervisor"
-_FOLDS_S, _TAPS_S = 1.2, 0.6
-"""Time to stop before SIGKILL: first for the folds, then for the taps, which record the folds' last messages."""
+_FOLDS_S, _TAPS_S = 1.2, 5.0
+"""Time to stop before SIGKILL: first for the folds, whose devices must rest, then for the taps, which record the folds'
+last messages. A tap needs 0.1 s; on a busy machine more, and nothing waits for it."""
 _OTHERS_S = 1.5
 """After a session's end: how long this host's taps hear what the other hosts still say."""
 _RESET_S = 10.0
