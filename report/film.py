@@ -55,7 +55,8 @@ class Stage:
             self._camera = _camera_axes(self._figure)
             self._plan = _plan_axes(self._figure, EDGE_OFFSET_M)
             self._map = _map_axes(self._figure, reel)
-            self._curve = _curve_axes(self._figure, comparison)
+            self._trained_min = _trained_min(reel, comparison)
+            self._curve = _curve_axes(self._figure, comparison, self._trained_min)
         self._moving: list[Any] = [*self._words(), *self._parts()]
         for artist in self._moving:
             artist.set_animated(True)
@@ -82,7 +83,7 @@ class Stage:
         self._plan.add_patch(self._body)
         self._cells = self._map.images[0]
         (self._here,) = self._map.plot([], [], "o", color="white", markeredgecolor=_INK, markersize=9)
-        (self._learned,) = self._curve.plot([], [], color=COLOURS["docked"], linewidth=2.4)
+        (self._learned,) = self._curve.plot([], [], color=COLOURS["docked"], linewidth=2.4, drawstyle="steps-post")
         (self._now,) = self._curve.plot([], [], "o", color=COLOURS["docked"], markersize=8, markeredgecolor="white")
         yield from (self._image, self._paths, self._path, self._sight, self._arm, self._body)
         yield from (self._cells, self._here, self._learned, self._now)
@@ -137,10 +138,11 @@ class Stage:
         self._here.set_data((math.degrees(frame.alpha_rad),), (math.degrees(frame.beta_rad),))
 
     def _set_curve(self, cue: Cue) -> None:
-        minutes = cue.moment.frame.time_s / 60
-        points = [point for point in self._comparison.alone if point[0] <= minutes]
-        self._learned.set_data(*(zip(*points, strict=True) if points else ((), ())))
-        self._now.set_data(*(((points[-1][0],), (points[-1][1],)) if points else ((), ())))
+        minutes = min(cue.moment.frame.time_s / 60, self._trained_min)
+        points = [(0.0, 0.0), *(point for point in self._comparison.alone if point[0] <= minutes)]
+        points.append((minutes, points[-1][1]))
+        self._learned.set_data(*zip(*points, strict=True))
+        self._now.set_data((minutes,), (points[-1][1],))
 
 
 def _camera_axes(figure: Any) -> Axes:
@@ -169,7 +171,7 @@ def _map_axes(figure: Any, reel: Reel) -> Axes:
     axes.imshow(np.zeros((1, 1, 4), np.uint8), origin="lower", extent=(-alpha, alpha, -beta, beta), aspect="auto")
     axes.grid(visible=False)
     axes.set(xlabel="alpha: bearing of the can, deg", ylabel="beta: round the table, deg")
-    axes.set_title("what it would do:", fontsize=11, loc="left")
+    axes.set_title(_map_title(reel), fontsize=11, loc="left")
     for turn, colour in zip(("left", "right"), _TURNS, strict=False):
         axes.plot([], [], "s", color=colour / 255, label=turn)
     axes.legend(
@@ -178,11 +180,24 @@ def _map_axes(figure: Any, reel: Reel) -> Axes:
     return axes
 
 
-def _curve_axes(figure: Any, comparison: Comparison) -> Axes:
+def _map_title(reel: Reel) -> str:
+    speeds_mps = reel.policies[-1][1].action_v_mps if reel.policies else ()
+    if any(v_mps < 0.0 for v_mps in speeds_mps):
+        return "plan (pale: backwards)"
+    return "plan (pale: slowly)" if len(speeds_mps) > 2 else "what it would do:"
+
+
+def _trained_min(reel: Reel, comparison: Comparison) -> float:
+    """Robot minutes until the end of training, or the last policy if there is none."""
+    trained_s = [moment.frame.time_s for moment in reel.moments if moment.frame.phase == "TRAIN"]
+    last_min = max((minutes for minutes, _ in comparison.alone), default=1.0)
+    return max(trained_s[-1] / 60.0 if trained_s else 0.0, last_min)
+
+
+def _curve_axes(figure: Any, comparison: Comparison, trained_min: float) -> Axes:
     axes: Axes = figure.add_axes((0.545, 0.075, 0.42, 0.29))
     axes.axhline(comparison.ceiling_percent, color=_PALE, linestyle="--", linewidth=1)
-    last_min = max((minutes for minutes, _ in comparison.alone), default=1.0)
-    axes.set(xlabel="robot minutes", ylim=(0, 104), xlim=(0, 1.02 * last_min))
+    axes.set(xlabel="robot minutes", ylim=(0, 104), xlim=(0, 1.02 * trained_min))
     axes.set_title(f"how well: % of {comparison.starts} starts. Dashed: the best possible", fontsize=11)
     return axes
 
