@@ -133,7 +133,7 @@ def _page(_: str, rows: list[Any]) -> Any:
 
 def _picture(_: str, rows: list[Any]) -> Any:
     kinds = [f"image/{row.format}" for row in rows]
-    return rr.EncodedImage.columns(blob=[row.data for row in rows], media_type=kinds)
+    return rr.EncodedImage.columns(blob=[row.data for row in rows], media_type=kinds, opacity=[1.0] * len(rows))
 
 
 def _lines(entity: str, rows: list[Lines]) -> Any:
