@@ -80,11 +80,12 @@ def write_versus(first: Path, second: Path, output: Path | None = None) -> tuple
 def _read(file: Path) -> tuple[Session, Comparison | None]:
     from report.comparison import compare  # noqa: PLC0415
     from report.session import read  # noqa: PLC0415
+    from runtime.recorded_launch import number_of  # noqa: PLC0415
 
     session = read(file)
     if not session.policies:
         return session, None
-    height_m = session.launch_number("simulator", "camera_up_m", 0.45)
+    height_m = number_of(session.launch, "camera_up_m", 0.45)
     return session, compare(session.policies, session.launch.get("task", {}), height_m)
 
 

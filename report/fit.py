@@ -25,6 +25,7 @@ from docking.policy import PolicyTable
 from docking.rates import RateModel
 from docking.task import Task
 from report.pairs import Pairs
+from runtime.recorded_launch import number_of
 from runtime.recording import Logged
 from schemas.drive_pb2 import Applied
 from schemas.percept_pb2 import Percept
@@ -52,6 +53,12 @@ class Promise:
     """It is about the pick-up pose; else about the goal cell."""
     ended_s: float = math.nan
     """When the robot was there; NaN if it never was."""
+
+    def note(self, trial: Trial, at_s: float) -> None:
+        """Another frame of its trial."""
+        is_there = trial.mode == Trial.GRASP if self.is_forecast else trial.goal_reached
+        if is_there and math.isnan(self.ended_s):
+            self.ended_s = at_s
 
     @property
     def took_s(self) -> float:
@@ -88,7 +95,7 @@ class FitReader:
     def __init__(self, launch: Mapping[str, Any], task: Task) -> None:
         """Begin."""
         self._task = task
-        self._goal_reward, self._period_s = _number(launch, "goal_reward", 300.0), 0.125
+        self._goal_reward, self._period_s = number_of(launch, "goal_reward", 300.0), 0.125
         self._newest: deque[Logged] = deque(maxlen=_RECENT)
         self._tables: dict[int, PolicyTable | None] = {}
         self._pairs: Pairs[Trial, Percept] = Pairs()
@@ -114,10 +121,8 @@ class FitReader:
 
     def take(self, message: Trial | Percept, capture_ns: int) -> None:
         """Take one sane message."""
-        if isinstance(message, Trial):
-            pair = self._pairs.first(capture_ns, message)
-        else:
-            pair = self._pairs.second(capture_ns, message)
+        halves = self._pairs
+        pair = halves.first(capture_ns, message) if isinstance(message, Trial) else halves.second(capture_ns, message)
         if pair is not None:
             self._frame(*pair, capture_ns)
 
@@ -128,13 +133,9 @@ class FitReader:
 
     def _frame(self, trial: Trial, percept: Percept, capture_ns: int) -> None:
         at_s = capture_ns * 1e-9
-        if self._open is not None and trial.began_ns == self._open[0]:
-            promise = self._open[1]
-            if math.isnan(promise.ended_s) and (
-                trial.mode == Trial.GRASP if promise.is_forecast else trial.goal_reached
-            ):
-                promise.ended_s = at_s
         is_new = self._open is None or trial.began_ns != self._open[0]
+        if self._open is not None and not is_new:
+            self._open[1].note(trial, at_s)
         forecasts = trial.dock_share > 0.0 and trial.phase == Trial.EVALUATE  # training ends in the goal cell
         if is_new and forecasts and trial.mode in _DRIVING:
             promised_s = trial.dock_s if trial.dock_share >= _LIKELY else math.nan
@@ -208,14 +209,3 @@ def _motion(
     change = np.median(np.abs(seen[first + _AHEAD] - seen[first]), axis=0)
     moved = (float(change[0]), float(change[1]), float(change[2]))
     return Motion(error[:, 0], error[:, 1], np.expm1(error[:, 2]), moved)
-
-
-def _number(launch: Mapping[str, Any], name: str, default: float) -> float:
-    """A parameter, of whichever component has it."""
-    specs = launch.get("components")
-    for spec in specs if isinstance(specs, list) else ():
-        params = spec.get("params") if isinstance(spec, dict) else None
-        value = params.get(name) if isinstance(params, dict) else None
-        if isinstance(value, int | float) and math.isfinite(value):
-            return float(value)
-    return default

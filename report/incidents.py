@@ -8,6 +8,7 @@ from typing import Any
 
 from runtime.contract import STALL
 from runtime.journal import LOADED
+from runtime.recorded_launch import specs_of
 from runtime.recording import Logged
 from schemas.session_pb2 import Status
 
@@ -150,10 +151,4 @@ class Incidents:
 
 def commanders_of(launch: Mapping[str, Any]) -> frozenset[str]:
     """Every input port of every component: base says by one of its own who drives."""
-    specs = launch.get("components")
-    return frozenset(
-        str(port)
-        for spec in (specs if isinstance(specs, list) else ())
-        if isinstance(spec, dict) and isinstance(spec.get("inputs"), dict)
-        for port in spec["inputs"]
-    )
+    return frozenset(str(port) for spec in specs_of(launch) for port in spec["inputs"])

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.recorded_launch import specs_of
 from runtime.recording import Logged
 
 _LONGEST_S = 60.0
@@ -37,8 +38,7 @@ class Latency:
 
     def __init__(self, launch: Mapping[str, Any]) -> None:
         """Begin, for the system of a resolved launch file, of whatever release."""
-        specs = launch.get("components")
-        self._specs = [s for s in (specs if isinstance(specs, list) else ()) if _is_wired(s)]
+        self._specs = specs_of(launch)
         self.is_lockstep = launch.get("clock") == "lockstep"
         self._host = next((str(s.get("host")) for s in self._specs if self._is_camera(s)), "")
         self._captures: dict[tuple[str, int], tuple[array[int], array[int]]] = {}
@@ -47,7 +47,7 @@ class Latency:
 
     @staticmethod
     def _is_camera(spec: Mapping[str, Any]) -> bool:
-        return "camera/image" in (spec.get("outputs") or {}).values()
+        return "camera/image" in spec["outputs"].values()
 
     def take(self, logged: Logged) -> None:
         """Take one message."""
@@ -104,7 +104,3 @@ class Latency:
         place = np.minimum(np.searchsorted(sequences, sequence), len(sequences) - 1)
         age_ms = (times_ns - captures[place])[sequences[place] == sequence] * 1e-6
         return np.asarray(age_ms[(age_ms >= 0.0) & (age_ms <= 1e3 * _LONGEST_S)])
-
-
-def _is_wired(spec: Any) -> bool:
-    return isinstance(spec, dict) and isinstance(spec.get("inputs"), dict)

@@ -17,6 +17,7 @@ from report.comparison import Comparison
 from report.failures import counted
 from report.session import Session, resolved
 from report.verdict import tiles
+from runtime.recorded_launch import number_of, specs_of
 
 _TIMES = 6
 """Times shown of failures of one name."""
@@ -94,7 +95,7 @@ def _docking(session: Session) -> Iterator[str]:
     if not evaluation:
         yield html.note("There was no evaluation: no trial with the policy frozen.")
     rows = outcome_rows({"training": training, "evaluation": evaluation})
-    offset_m, unit = session.launch_number("simulator", "edge_offset_m", 0.05), "m"
+    offset_m, unit = number_of(session.launch, "edge_offset_m", 0.05), "m"
     if not session.knows_truth:
         offset_m, unit = 0.0, "camera heights"
     figures: list[Figure | str] = [html.card("What became of the trials", html.table(rows))]
@@ -285,14 +286,12 @@ def _facts(session: Session) -> Iterable[tuple[str, str]]:
 
 def components_of(launch: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Parameters of the task and of each component, from a resolved launch file of whatever release."""
-    specs = launch.get("components")
     found: dict[str, Mapping[str, Any]] = {}
-    for spec in specs if isinstance(specs, list) else ():
-        if isinstance(spec, dict) and isinstance(spec.get("params"), dict):
-            task = spec["params"].get("task")
-            if isinstance(task, dict):
-                found.setdefault("task", task)
-            found[str(spec.get("name"))] = {key: value for key, value in spec["params"].items() if key != "task"}
+    for spec in specs_of(launch):
+        task = spec["params"].get("task")
+        if isinstance(task, dict):
+            found.setdefault("task", task)
+        found[str(spec.get("name"))] = {key: value for key, value in spec["params"].items() if key != "task"}
     return found
 
 

@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from report.comparison import Comparison
 from report.pictures import COLOURS, STYLE, draw_paths, draw_policy
 from report.session import Session
+from runtime.recorded_launch import number_of
 
 
 def write(session: Session, comparison: Comparison, file: Path) -> None:
@@ -29,7 +30,7 @@ def write(session: Session, comparison: Comparison, file: Path) -> None:
     _draw_camera(axes[0], session)
     evaluation = [trial for trial in session.trials if trial.phase == "EVALUATE"]
     docked = sum(trial.docked for trial in evaluation)
-    draw_paths(axes[1], evaluation, session.launch_number("simulator", "edge_offset_m", 0.05))
+    draw_paths(axes[1], evaluation, number_of(session.launch, "edge_offset_m", 0.05))
     axes[1].set_title(f"evaluation: {docked} of {len(evaluation)} docked")
     draw_policy(axes[2], session.policies[-1][1])
     axes[2].set_title("learned: turn left / right")

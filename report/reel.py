@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from components.pilot.messages import table_of
 from docking.score import Frame, Scorer, Trial
 from report.frames import is_sane, joined
 from report.pairs import Pairs
+from report.policies import is_policy
 from runtime.params import ConfigurationError
 from runtime.recording import Recording
 from schemas.policy_pb2 import Policy
@@ -69,12 +69,12 @@ def read(file: Path) -> Reel:
         message = logged.decoded()
         if isinstance(message, View):
             reel.views[logged.capture_ns] = message
-        elif isinstance(message, Policy) and _is_policy(message):
+        elif isinstance(message, Policy) and is_policy(message):
             at_s = logged.capture_ns * 1e-9
             newest[int(at_s / POLICY_S)] = (at_s, message)
         elif isinstance(message, TrialMessage | Truth) and is_sane(message):
-            first = isinstance(message, TrialMessage)
-            pair = (pairs.first if first else pairs.second)(logged.capture_ns, message)  # type: ignore[arg-type]
+            at_ns = logged.capture_ns
+            pair = pairs.first(at_ns, message) if isinstance(message, TrialMessage) else pairs.second(at_ns, message)
             if pair is not None:
                 frame = joined(*pair, logged.capture_ns)
                 scorer.frame(frame)
@@ -88,9 +88,3 @@ def read(file: Path) -> Reel:
 def _topics(recording: Recording, *schemas: str) -> list[str]:
     return [topic.topic for topic in recording.topics() if topic.schema in schemas]
 
-
-def _is_policy(message: Policy) -> bool:
-    try:
-        return table_of(message) is not None
-    except ValueError:
-        return False

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from components.pilot.messages import table_of
 from docking.angles import wrap
 from docking.score import Trial
 from report.failures import Endings, Failed
@@ -18,6 +17,7 @@ from report.frames import Scoreboard, is_sane
 from report.incidents import Incident, Incidents, commanders_of
 from report.latency import Hop, Latency
 from report.pairs import Pairs
+from report.policies import is_policy
 from report.shadow import Beside, ShadowReader, task_of
 from report.told import Told
 from runtime.mcap_items import Fault
@@ -87,15 +87,6 @@ class Session:
     def of_phase(self, phase: str) -> list[Trial]:
         """Trials of TRAIN or EVALUATE."""
         return [trial for trial in self.trials if trial.phase == phase]
-
-    def launch_number(self, component: str, name: str, default: float) -> float:
-        """A component's parameter; the default if the launch file, which may be anybody's, holds no such number."""
-        specs = self.launch.get("components")
-        for spec in specs if isinstance(specs, list) else ():
-            if isinstance(spec, dict) and spec.get("name") == component and isinstance(spec.get("params"), dict):
-                value = spec["params"].get(name)
-                return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
-        return default
 
 
 def read(file: Path) -> Session:
@@ -226,15 +217,7 @@ class _Reader:
         images = {mode: logged.decoded() for mode, logged in self._images.items()}
         session.pictures = {mode: image.data for mode, image in images.items() if image is not None}
         policies = [(logged.capture_ns * 1e-9, logged.decoded()) for logged in self._policies.values()]
-        session.policies = [(at_s, policy) for at_s, policy in policies if _is_policy(policy)]
-
-
-def _is_policy(message: Policy | None) -> bool:
-    """Whether a policy is one that the pilot would take."""
-    try:
-        return message is not None and table_of(message) is not None
-    except ValueError:
-        return False
+        session.policies = [(at_s, policy) for at_s, policy in policies if is_policy(policy)]
 
 
 def resolved(session: Session) -> str:

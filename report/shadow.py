@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from components.pilot.sight import sight_of
 from docking.task import Task
 from runtime.params import ConfigurationError, build
+from runtime.recorded_launch import specs_of
 from runtime.recording import Logged
 from schemas.trial_pb2 import Trial
 
@@ -50,15 +51,12 @@ class Keys:
     @staticmethod
     def of(launch: Mapping[str, Any]) -> Keys:
         """Of a resolved launch file, of whatever release."""
-        specs = launch.get("components")
-        for spec in specs if isinstance(specs, list) else ():
-            if isinstance(spec, dict) and isinstance(spec.get("params"), dict) and spec["params"].get("shadow") is True:
-                outputs, inputs = spec.get("outputs"), spec.get("inputs")
-                if isinstance(outputs, dict) and isinstance(inputs, dict):
-                    base = str(inputs.get("base", "")).partition("/")[0]
-                    drive, advice = str(outputs.get("drive")), str(outputs.get("trial"))
-                    trial = str(launch.get("trial", ""))
-                    return Keys(drive, advice, f"{base}/applied", str(inputs.get("percept")), trial)
+        for spec in specs_of(launch):
+            if spec["params"].get("shadow") is True:
+                outputs, inputs = spec["outputs"], spec["inputs"]
+                base = str(inputs.get("base", "")).partition("/")[0]
+                drive, advice = str(outputs.get("drive")), str(outputs.get("trial"))
+                return Keys(drive, advice, f"{base}/applied", str(inputs.get("percept")), str(launch.get("trial", "")))
         return Keys()
 
 

@@ -29,10 +29,8 @@ class Told:
 
     def take(self, message: Trial | Percept, capture_ns: int) -> None:
         """Take one sane message."""
-        if isinstance(message, Trial):
-            pair = self._pairs.first(capture_ns, message)
-        else:
-            pair = self._pairs.second(capture_ns, message)
+        halves = self._pairs
+        pair = halves.first(capture_ns, message) if isinstance(message, Trial) else halves.second(capture_ns, message)
         if pair is not None:
             self._scorer.frame(self._frame(*pair, capture_ns))
 

@@ -114,7 +114,8 @@ def _wrong(session: Session) -> Tile:
         machinery.append("the file is damaged or torn")
     told += [f"Machinery: {', '.join(machinery)}."] if machinery else []
     if not told:
-        return Tile("What went wrong?", "Nothing", "good", "No failed trial, nobody died, nothing late, nothing lost.")
+        words = f"No trial of the {phase} failed, nobody died, nothing late, nothing lost."
+        return Tile("What went wrong?", "Nothing", "good", words)
     grave = [incident for incident in session.incidents if incident.kind in _GRAVE]
     failed = sum(names.values()) if phase == "evaluation" else 0
     bad = not session.whole or any(incident.kind in {"died", "stalled"} for incident in grave)

@@ -19,6 +19,7 @@ from report.incidents import Incident
 from report.page import outcome_rows, shown, summary, tracking
 from report.session import Session
 from report.verdict import Tile, judged, percent_range
+from runtime.recorded_launch import number_of, specs_of
 
 _DIFFERENCES = 60
 """Lines of configuration shown."""
@@ -85,11 +86,9 @@ def differences(first: Session, second: Session) -> list[tuple[str, tuple[str, s
 def _settings(session: Session) -> dict[str, Any]:
     """The launch file by component, and the machine; not when and where it was recorded."""
     launch = session.launch
-    specs = launch.get("components")
     found = {key: value for key, value in launch.items() if key not in {"components", "realm"}}
-    for spec in specs if isinstance(specs, list) else ():
-        if isinstance(spec, dict):
-            found[str(spec.get("name"))] = {key: value for key, value in spec.items() if key not in {"name", "seed"}}
+    for spec in specs_of(launch):
+        found[str(spec.get("name"))] = {key: value for key, value in spec.items() if key not in {"name", "seed"}}
     found.pop("recorder", None)  # the file's own name and how it is written
     try:
         found["machine"] = json.loads(session.metadata.get("fingerprint", "{}"))
@@ -170,7 +169,7 @@ def _docking(sides: tuple[Side, Side]) -> Iterator[str]:
         trials = groups[name]
         if trials:
             unit = "m" if side.session.knows_truth else "camera heights"
-            offset_m = side.session.launch_number("simulator", "edge_offset_m", 0.05)
+            offset_m = number_of(side.session.launch, "edge_offset_m", 0.05)
             figures.append(charts.paths(trials, f"Paths of {name}", offset_m, unit))
     yield html.cards(figures)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
+
 from runtime.clock import LOG_SKEW_NS
 from runtime.wire import Refused, Stamp
 
@@ -29,3 +31,8 @@ class CaptureOrder:
         elif stamp.capture_ns < newest.capture_ns - LOG_SKEW_NS:
             back_s = (newest.capture_ns - stamp.capture_ns) / 1e9
             raise Refused(f"time runs backwards by {back_s:.3f} s in run {stamp.run:016x}")
+
+    def late(self) -> tuple[str, int]:
+        """The port whose newest message is the oldest, and its capture time; no name before the first message."""
+        newest = ((port, stamp.capture_ns) for port, stamp in self._newest.items())
+        return min(newest, key=itemgetter(1), default=("", 0))

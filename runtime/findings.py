@@ -14,6 +14,7 @@ from mcap.records import Channel, Schema
 from runtime.journal import entries
 from runtime.mcap_items import Fault, RawMessage
 from runtime.params import ConfigurationError
+from runtime.recorded_launch import specs_of
 from runtime.recording import Recording, run_of
 from runtime.window import SEQUENCE_MASK
 from schemas.session_pb2 import Journal
@@ -112,9 +113,7 @@ class Examination:
         specs = launch.get("components")
         if launch and not (isinstance(specs, list) and all(isinstance(s, dict) and s.get("name") for s in specs)):
             self._note("session", "the launch file holds no list of components with names")
-        for spec in specs if isinstance(specs, list) else ():
-            if isinstance(spec, dict) and isinstance(spec.get("inputs"), dict) and not spec.get("tap"):
-                self._inputs[str(spec.get("name"))] = spec["inputs"]
+        self._inputs.update((str(spec.get("name")), spec["inputs"]) for spec in specs_of(launch) if not spec.get("tap"))
 
     def _schema(self, schema: Schema) -> None:
         self._names[schema.id] = schema.name

@@ -49,7 +49,6 @@ class Fold:
         self._inbox = station.inbox
         self._outlets = {outlet.key: outlet for outlet in station.outlets.ports.values()}
         self._journal = JournalWriter()
-        self._newest_ns: dict[str, int] = {}
         self._order = CaptureOrder()
         self._status_due_ns = 0
         self._heard_ns = 0
@@ -220,7 +219,8 @@ class Fold:
         try:
             self._check_capture(port, stamp.capture_ns)
             message = self._decoders[port](sample.payload)
-            self._order.check(port, stamp)
+            if port != HOLD_KEY:  # it has no capture time
+                self._order.check(port, stamp)
         except Refused as reason:
             self._station.door.refusals.add(sample.key, reason)
             return
@@ -228,7 +228,6 @@ class Fold:
             self._hold(message, stamp.run)
             return
         self._heard_ns = time.monotonic_ns()
-        self._newest_ns[port] = max(stamp.capture_ns, self._newest_ns.get(port, 0))
         if self._lockstep and self._ticks is not None:
             self._tick_up_to(max(stamp.capture_ns, self._frames.now_ns))
         # Another host's clock does not move this one's; in lockstep there is only one.
@@ -265,8 +264,8 @@ class Fold:
             return
         self._heard_ns = now_ns
         if not self._holders:
-            late = min(self._newest_ns, key=lambda port: self._newest_ns[port], default="any input")
-            self._station.note = f"stall: nothing on {late} since {self._newest_ns.get(late, 0) / 1e9:.3f} s"
+            late, newest_ns = self._order.late()
+            self._station.note = f"stall: nothing on {late or 'any input'} since {newest_ns / 1e9:.3f} s"
             print(self._station.note, flush=True)  # noqa: T201  (standard output is the component's log)
             self._hand(self._own_event(STALL, self._now_ns()))
 

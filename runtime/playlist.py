@@ -9,6 +9,7 @@ from typing import Any
 
 from runtime.clock import LOG_SKEW_NS
 from runtime.params import ConfigurationError
+from runtime.recorded_launch import specs_of
 from runtime.recording import Logged, Recording
 from runtime.selection import Selection
 
@@ -149,11 +150,9 @@ def in_order(messages: Iterable[Logged], skew_ns: int, time_of: Callable[[Logged
 
 def _owners(launch: Mapping[str, Any]) -> dict[str, str]:
     """Topic -> component, for the ports of a resolved launch file; of any release, so nothing is taken for granted."""
-    specs = launch.get("components")
-    rows = [row for row in specs if isinstance(row, dict)] if isinstance(specs, list) else []
     return {
-        key: str(row.get("name", ""))
-        for row in rows
-        for key in (row["outputs"].values() if isinstance(row.get("outputs"), dict) else ())
+        key: str(spec.get("name", ""))
+        for spec in specs_of(launch)
+        for key in spec["outputs"].values()
         if isinstance(key, str)
     }

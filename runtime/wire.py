@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import secrets
 import struct
 from collections.abc import Callable, Iterable
@@ -98,7 +99,10 @@ class Decoder:
 
 
 def _range_check(descriptor: Descriptor) -> Callable[[Any], bool]:
-    """Whether all real numbers of a message are finite and possible; a comparison with NaN is false."""
+    """Whether all real numbers of a message are finite and possible.
+
+    Judged by the root of their squares' sum, one call for all of them; a comparison with NaN is false.
+    """
     single = [field.name for field in descriptor.fields if field.type in _REALS and not field.is_repeated]
     listed = [field.name for field in descriptor.fields if field.type in _REALS and field.is_repeated]
     nested = [(field, _range_check(field.message_type)) for field in descriptor.fields if field.message_type]
@@ -106,12 +110,10 @@ def _range_check(descriptor: Descriptor) -> Callable[[Any], bool]:
     scalars: Callable[[Any], tuple[float, ...]] = attrgetter(single[0], *single) if single else lambda _: ()
 
     def check(message: Any) -> bool:
-        if not all(-LARGEST < value < LARGEST for value in scalars(message)):
-            return False
         lists: Iterable[float] = chain.from_iterable(getattr(message, name) for name in listed)
-        return all(-LARGEST < value < LARGEST for value in lists) and all(
-            inner(part) for field, inner in nested for part in _parts(message, field)
-        )
+        if not (math.hypot(*scalars(message)) < LARGEST and math.hypot(*lists) < LARGEST):
+            return False
+        return all(inner(part) for field, inner in nested for part in _parts(message, field))
 
     return check
 

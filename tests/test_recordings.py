@@ -14,6 +14,7 @@ from report.page import write
 from report.session import read
 from runtime.findings import Examination
 from runtime.mend import mend
+from runtime.recorded_launch import number_of
 from runtime.recording import Recording
 from runtime.replay import replay
 from schemas.percept_pb2 import Percept
@@ -61,7 +62,7 @@ def test_a_report_needs_no_good_launch_file(tmp_path, launch):
     file = rewritten(
         FOLDER / "docking.mcap", tmp_path / "odd.mcap", lambda _, m: m, attach=lambda _: json.dumps(launch).encode()
     )
-    assert read(file).launch_number("simulator", "edge_offset_m", 0.05) == 0.05
+    assert number_of(read(file).launch, "edge_offset_m", 0.05) == 0.05
     write(read(file), tmp_path / "odd.html")
     assert (tmp_path / "odd.html").exists()
 

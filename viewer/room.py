@@ -9,6 +9,7 @@ from typing import Any
 
 from docking.plant import pose
 from docking.task import Task
+from runtime.recorded_launch import number_of
 from schemas.percept_pb2 import Percept
 from viewer.shown import Lines, Point
 
@@ -35,8 +36,7 @@ class Room:
     @staticmethod
     def of(launch: Mapping[str, Any], task: Task) -> Room:
         """The room of a resolved launch file."""
-        number = _numbers(launch)
-        return Room(task, number("camera_up_m", 1.0), number("edge_offset_m", 0.0))
+        return Room(task, number_of(launch, "camera_up_m", 1.0), number_of(launch, "edge_offset_m", 0.0))
 
     @property
     def unit(self) -> str:
@@ -83,16 +83,3 @@ class Room:
 def _circle(x: float, y: float, radius: float) -> tuple[Point, ...]:
     turns = [2 * math.pi * corner / _CORNERS for corner in range(_CORNERS + 1)]
     return tuple((x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns)
-
-
-def _numbers(launch: Mapping[str, Any]) -> Any:
-    """The simulator's parameters by name, if there is one."""
-    specs = launch.get("components")
-    rows = [spec for spec in specs if isinstance(spec, dict)] if isinstance(specs, list) else []
-    params: Any = next((row.get("params") for row in rows if "camera_up_m" in (row.get("params") or {})), {})
-
-    def number(name: str, default: float) -> float:
-        value = params.get(name) if isinstance(params, dict) else None
-        return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
-
-    return number

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from runtime.recorded_launch import specs_of
+
 _PORTS = {
     "image": "foxglove.CompressedImage",
     "view": "berth.View",
@@ -42,6 +44,4 @@ class Wiring:
 
 
 def _inputs(launch: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    specs = launch.get("components")
-    rows = [spec.get("inputs") for spec in specs if isinstance(spec, dict)] if isinstance(specs, list) else []
-    return [row for row in rows if isinstance(row, dict)]
+    return [spec["inputs"] for spec in specs_of(launch)]
