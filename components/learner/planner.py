@@ -59,6 +59,10 @@ class Planner:
         self._dt_s = period_s
         self._moves = np.empty(0)
 
+    def aim(self, limits: Limits) -> None:
+        """The next plan is for another goal, on the same nodes."""
+        self.limits, self.model = limits, None
+
     def begin(self, model: RateModel) -> None:
         """Plan with another model."""
         self._set_model(model)
