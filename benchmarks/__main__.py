@@ -23,6 +23,8 @@ BENCHMARKS = {
     "latency": "frame to command against a bare chain of as many processes",
     "stopping": "Ctrl-C and kill -9 of each process: how fast the robot stops",
     "recorder": "what the recorder costs and loses, and what a kill -9 costs",
+    "soak": "an hour in real time, eight hours in lockstep: memory of each process, messages lost, rates",
+    "view": "an hour of `berth view` beside a robot in real time: memory of the viewer's processes",
     "replay": "a live session of 5 minutes, every component replayed: share of equal outputs, speed",
     "relearn": "learning again from 40 robot-minutes against reading the same channels with the mcap library",
     "report": "the report about a session of 40 robot-minutes, against reading its file",

@@ -17,6 +17,7 @@ from typing import IO, Any
 
 from mcap.writer import CompressionType, Writer
 
+from runtime.chunk_index import kept_in_a_file
 from runtime.contract import ComponentError
 from runtime.fingerprint import fingerprint
 from runtime.messages import descriptor_set
@@ -63,6 +64,7 @@ class LogWriter:
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int], int] = {}
         try:
+            self._index = kept_in_a_file(self._writer, file.parent)
             self._describe(system, started)
         except OSError as error:
             raise self._failed(error) from None
@@ -133,6 +135,7 @@ class LogWriter:
         try:
             self._writer.finish()
             self._stream.close()
+            self._index.close()
         except OSError as error:
             raise self._failed(error) from None
 
