@@ -23,7 +23,7 @@ from runtime.system import System
 GOOD_ENDS = ("duration", "interrupted")
 """Reasons that are no failure, beside the end that the system itself declares."""
 
-LAUNCH = Annotated[Path, typer.Argument(help="Launch file.")]
+LAUNCH = Annotated[Path, typer.Argument(help="Launch file, or one that Berth brings, by its name: sim.")]
 HOST = Annotated[str, typer.Option(help="Start only the components of this host; the others run elsewhere.")]
 LISTEN = Annotated[str, typer.Option(help="Let another host's part come in here, e.g. tcp/0.0.0.0:7447.")]
 CONNECT = Annotated[str, typer.Option(help="Where another host's part listens, e.g. tcp/192.168.1.2:7447.")]

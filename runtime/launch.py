@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from runtime import shared_task
+from runtime.brought import launch_file
 from runtime.device import checked_device
 from runtime.params import ConfigurationError, build
 from runtime.system import ComponentSpec, System, ports_of
@@ -44,7 +45,7 @@ def load(
     """Read, check and resolve a launch file.
 
     Args:
-        file: path of the TOML file.
+        file: path of the TOML file; see `runtime.brought`.
         overrides: `component.param=value`, `task.key=value`, `session.key=value`, or `task=FILE` for the fields of a
             task file; the value as in TOML, text may stand without quotes.
         clock: as on the command line; empty = as in the file.
@@ -57,7 +58,8 @@ def load(
     Raises:
         ConfigurationError: one line that names file, key, value and rule.
     """
-    table = read_toml(Path(file))
+    file = launch_file(file)
+    table = read_toml(file)
     shared_task.include(table, str(file))
     for override in overrides:
         _override(table, override)
