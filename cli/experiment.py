@@ -21,7 +21,7 @@ NAME = Annotated[
     str,
     typer.Argument(
         help="ceiling, table2, curves, trajectories, schools, docking-law, ablation, paper-robot, "
-        "minutes, minutes-two-speeds, minutes-reverse, minutes-changed, minutes-mid-session.",
+        "minutes, minutes-two-speeds, minutes-reverse, minutes-changed, minutes-mid-session, faults.",
         show_default=False,
     ),
 ]
@@ -133,13 +133,12 @@ def _print(outcome: Outcome) -> None:
     from rich.console import Console  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
 
-    from experiments.summary import summary  # noqa: PLC0415
-
-    console, (header, *lines) = Console(width=None if sys.stdout.isatty() else _WIDTH), summary(outcome.rows)
+    form = outcome.form
+    console, (header, *lines) = Console(width=None if sys.stdout.isatty() else _WIDTH), form.summary(outcome.rows)
     table = Table(*header)
     for line in lines:
         table.add_row(*line)
     console.print(table)
-    console.print("+-: 95 % interval of the mean over seeds (Student's t)", highlight=False)
+    console.print(form.note, highlight=False)
     for path in (outcome.csv, *outcome.pictures):
         console.print(str(path), highlight=False)

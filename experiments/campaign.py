@@ -7,9 +7,9 @@ An experiment is a module with
     def run(job: Job) -> Sequence[Row]: ...                 # pure: same job, same rows (but for the speed column)
     def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]: ...    # the pictures made
 
-and a line in `experiments.registry`. A finished job's rows are kept on disk under a key made of the job and of the
-sources that computed it, so a campaign that was interrupted or extended by seeds runs only what is missing, and
-rows of older code are never mixed in.
+and a line in `experiments.registry`; also a `FORM` (`experiments.form`) if its rows are no `Row`. A finished job's rows
+are kept on disk under a key made of the job and of the sources that computed it, so a campaign that was interrupted or
+extended by seeds runs only what is missing, and rows of older code are never mixed in.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import joblib
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from experiments.files import write_atomically
-from experiments.rows import Row, row_of, write_csv
+from experiments.form import Form, form_of
+from experiments.rows import write_csv
 from runtime.params import ConfigurationError
 
 Value = str | int | float | bool | None
@@ -73,19 +74,21 @@ class Experiment(Protocol):
     __name__: str
 
     def jobs(self, options: Options) -> Sequence[Job]: ...  # noqa: D102
-    def run(self, job: Job) -> Sequence[Row]: ...  # noqa: D102
-    def draw(self, rows: Sequence[Row], folder: Path) -> Sequence[Path]: ...  # noqa: D102
+    def run(self, job: Job) -> Sequence[Any]: ...  # noqa: D102
+    def draw(self, rows: Sequence[Any], folder: Path) -> Sequence[Path]: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
 class Outcome:
     """What a campaign made."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[Any, ...]
     csv: Path
     pictures: tuple[Path, ...]
     resumed_jobs: int
     """Jobs whose rows were on disk already."""
+    form: Form
+    """Of the rows."""
 
 
 def seeds_of(text: str) -> tuple[int, ...]:
@@ -130,10 +133,10 @@ def run_campaign(
         for key, fresh in _results(work, backend, workers):
             _keep(paths[key], fresh)
             progress.advance(task)
-    rows = tuple(row for key in store for row in _kept(paths[key]))
-    csv = folder / f"{experiment.NAME}.csv"
-    write_csv(csv, rows)
-    return Outcome(rows, csv, tuple(experiment.draw(rows, folder)), len(store) - len(missing))
+    form, csv = form_of(experiment), folder / f"{experiment.NAME}.csv"
+    rows = tuple(row for key in store for row in _kept(paths[key], form))
+    write_csv(csv, rows, form.columns)
+    return Outcome(rows, csv, tuple(experiment.draw(rows, folder)), len(store) - len(missing), form)
 
 
 def job_key(name: str, job: Job) -> str:
@@ -152,13 +155,13 @@ def sources_digest() -> str:
     return digest.hexdigest()
 
 
-def _run(key: str, module: str, job: Job) -> tuple[str, list[Row]]:
+def _run(key: str, module: str, job: Job) -> tuple[str, list[Any]]:
     """One job, in a worker."""
     experiment: Experiment = importlib.import_module(module)
     return key, list(experiment.run(job))
 
 
-def _results(work: Sequence[tuple[str, str, Job]], backend: str, workers: int) -> Iterator[tuple[str, list[Row]]]:
+def _results(work: Sequence[tuple[str, str, Job]], backend: str, workers: int) -> Iterator[tuple[str, list[Any]]]:
     _register(backend)
     threads = {"inner_max_num_threads": 1} if backend == "loky" else {}
     with joblib.parallel_config(backend=backend, n_jobs=workers, **threads):
@@ -186,13 +189,13 @@ def _register(backend: str) -> None:
         raise ConfigurationError(f"--backend {backend} needs `pip install {package}` ({error})") from error
 
 
-def _keep(path: Path, rows: Iterable[Row]) -> None:
+def _keep(path: Path, rows: Iterable[Any]) -> None:
     with write_atomically(path) as file:
         json.dump([asdict(row) for row in rows], file)
 
 
-def _kept(path: Path) -> list[Row]:
-    return [row_of(table) for table in json.loads(path.read_text(encoding="utf-8"))]
+def _kept(path: Path, form: Form) -> list[Any]:
+    return [form.row_of(table) for table in json.loads(path.read_text(encoding="utf-8"))]
 
 
 def _progress(console: Console | None) -> Progress:

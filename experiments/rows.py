@@ -6,6 +6,7 @@ import csv
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from experiments.files import write_atomically
 
@@ -65,11 +66,11 @@ def _number(value: object) -> float | None:
     return None if value is None or value == "" else float(str(value))
 
 
-def write_csv(path: Path, rows: Iterable[Row]) -> None:
-    """Write rows under a header of the column names, atomically."""
+def write_csv(path: Path, rows: Iterable[Any], columns: Sequence[str] = COLUMNS) -> None:
+    """Write rows, dataclasses with these fields, under a header of the column names, atomically."""
     with write_atomically(path) as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
+        writer.writerow(columns)
         writer.writerows([_text(value) for value in asdict(row).values()] for row in rows)
 
 

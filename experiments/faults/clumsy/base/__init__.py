@@ -1,0 +1,1 @@
+"""`components.base` with a fuse."""

@@ -1,0 +1,1 @@
+"""`components.grasper` with a fuse."""

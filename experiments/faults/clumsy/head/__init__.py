@@ -1,0 +1,1 @@
+"""`components.head` with a fuse."""

@@ -1,0 +1,1 @@
+"""`components.learner` with a fuse."""

@@ -1,0 +1,1 @@
+"""`components.simulator` with a fuse."""

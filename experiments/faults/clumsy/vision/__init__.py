@@ -1,0 +1,1 @@
+"""`components.vision` with a fuse."""

@@ -1,0 +1,19 @@
+"""The ports of `components.vision`, and a fuse."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from components.vision import ports
+from components.vision.ports import INPUTS, OUTPUTS
+
+
+@dataclass(frozen=True)
+class Params(ports.Params):
+    """Those of the component, and when it shall fail."""
+
+    fuse: str = ""
+    """Path of a file: once it is there, the next message is one that it can not digest."""
+
+
+__all__ = ["INPUTS", "OUTPUTS", "Params"]

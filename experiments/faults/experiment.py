@@ -1,0 +1,64 @@
+"""Faults of every process at random moments, and what holds nevertheless: processes on the bus, then folds alone.
+
+A seed is one session of real processes, shot at with signals and limits (`plan`), and many sessions of the same folds
+under a virtual clock, whose messages are dropped, delayed and doubled (`virtual`).
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+
+from experiments.campaign import Job, Options
+from experiments.faults.plan import plan
+from experiments.faults.rules import Session, simulated_robot
+from experiments.faults.session import RECORDING, run_session
+from experiments.faults.timeline import Moved, Told, timeline
+from experiments.faults.verdict import Verdict, summary, verdict_of
+from experiments.form import Form
+
+NAME = "faults"
+SEEDS = 100
+FORM = Form(
+    tuple(field.name for field in fields(Verdict)),
+    verdict_of,
+    summary,
+    "worst: seconds (trials, for the learner); docs/promises.md says what is not promised",
+)
+
+
+def jobs(options: Options) -> Sequence[Job]:
+    """Two for each seed."""
+    return [{"seed": seed, "shell": shell} for seed in options.seeds_or(SEEDS) for shell in ("live",)]
+
+
+def run(job: Job) -> Sequence[Verdict]:
+    """One session; the evidence is kept where a promise was broken."""
+    seed, folder = int(job["seed"] or 0), Path(tempfile.mkdtemp(prefix="berth-faults-"))
+    found = shoot(seed, folder)
+    if all(verdict.held for verdict in found):
+        shutil.rmtree(folder)
+    else:
+        print(f"faults, seed {seed}: evidence in {folder}", flush=True)
+    return found
+
+
+def draw(rows: Sequence[Verdict], folder: Path) -> Sequence[Path]:
+    """Nothing: the table says it all."""
+    del rows, folder
+    return ()
+
+
+def shoot(seed: int, folder: Path) -> list[Verdict]:
+    """A session of real processes, done to as the seed says, and judged."""
+    happened, watched = run_session(plan(seed), seed, folder)
+    origin_ns = happened.origin_ns
+    truths = [Moved(seen.capture_ns, seen.v_mps, seen.omega_radps) for seen in watched.seen.truths]
+    commands = [
+        Told(seen.capture_ns, seen.at_ns - origin_ns, seen.v_mps, seen.omega_radps) for seen in watched.seen.commands
+    ]
+    line = timeline(folder / RECORDING, truths, commands)
+    return list(Session(happened, line, folder / RECORDING, simulated_robot()).verdicts(NAME, seed))
