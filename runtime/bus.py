@@ -24,6 +24,9 @@ _THREADS = "(app:(worker_threads:1),rx:(handover:app),acc:(handover:app),tx:(han
 """One thread for all of zenoh: fewer hops between threads, a fifth less processor time per message (measured)."""
 ALONE = Link()
 _NOTHING: Mapping[str, object] = MappingProxyType({})
+_GUEST_S = 0.5
+"""A router elsewhere that does not answer within this is not there."""
+_RETRY = {"period_init_ms": 500, "period_max_ms": 500, "period_increase_factor": 1}
 _READY = "@ready"
 """A verbatim chunk: `REALM/**` does not match it."""
 
@@ -40,9 +43,8 @@ def open_router(endpoint: str, link: Link = ALONE, clock: str = "lockstep") -> z
         ConfigurationError: an endpoint is busy or malformed.
     """
     listen = [endpoint, link.listen] if link.listen else [endpoint]
-    connect = [link.connect] if link.connect else []
     try:
-        return zenoh.open(_config("router", listen, connect, link.options(clock)))
+        return zenoh.open(_config("router", listen, link.endpoints(clock), link.options(clock)))
     except zenoh.ZError as error:
         raise ConfigurationError(f"endpoint {' and '.join(listen)} must be free: {_reason(error)}") from None
 
@@ -64,6 +66,27 @@ def open_observer(endpoint: str) -> zenoh.Session:
         return open_peer(endpoint)
     except (OSError, zenoh.ZError) as error:
         raise ConfigurationError(f"endpoint {endpoint} must be a running system: {_reason(error)}") from None
+
+
+def open_client(endpoint: str, zid: str) -> zenoh.Session:
+    """A guest at somebody else's router, a robot's for instance; zenoh finds it again after every loss.
+
+    A client: with `peers_failover_brokering` off, as routers of rmw_zenoh have it, one peer hears nothing of another.
+
+    Args:
+        endpoint: of the router.
+        zid: id of the session, hexadecimal, without leading zeros.
+
+    Raises:
+        OSError: nobody is there.
+    """
+    with socket.create_connection(_address(endpoint), timeout=_GUEST_S):
+        pass
+    more = {"id": zid, "connect/retry": _RETRY, "transport/link/tx/lease": 1000}
+    try:
+        return zenoh.open(_config("client", [], [endpoint], more))
+    except zenoh.ZError as error:
+        raise ConnectionError(_reason(error)) from None
 
 
 def free_endpoint() -> str:
@@ -123,7 +146,7 @@ def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str,
 
 def _address(endpoint: str) -> tuple[str, int]:
     host, _, port = endpoint.partition("/")[2].rpartition(":")
-    return host, int(port)
+    return host.strip("[]"), int(port)
 
 
 def _reason(error: Exception) -> str:

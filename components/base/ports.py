@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +10,14 @@ from docking.angles import DEG
 from runtime.contract import DeviceKind, Input, Kind, Peers, Port, Tick
 from runtime.params import between, one_of, positive, ruled, scale
 from schemas.drive_pb2 import Applied, BaseCommand, BaseState, Drive
+
+_NAME = r"[A-Za-z_]\w*"
+_TOPIC = rf"/?{_NAME}(/{_NAME})*"
+
+
+def _text(default: str, words: str, pattern: str) -> str:
+    """Field of a text that must match as a whole."""
+    return ruled(default, words, lambda value: re.fullmatch(pattern, value, re.ASCII) is not None)
 
 
 @dataclass(frozen=True)
@@ -110,8 +119,60 @@ class Pioneer:
     """Number of that port. P2OS has only the first."""
 
 
+@dataclass(frozen=True)
+class Ros2:
+    """`device = { kind = "ros2", endpoint = "tcp/ROBOT:7447" }`: a robot of ROS 2, over zenoh; needs no ROS here."""
+
+    endpoint: str = _text("tcp/127.0.0.1:7447", "tcp/HOST:PORT", r"tcp/[^/\s]+:\d+")
+    """Of the robot's zenoh router: `zenoh-bridge-ros2dds`, or rmw_zenoh's `rmw_zenohd`."""
+    bridge: str = one_of("ros2dds", "ros2dds", "rmw_zenoh")
+    """`ros2dds`: its nodes speak DDS, and zenoh-bridge-ros2dds runs beside them; `rmw_zenoh`: they speak zenoh."""
+    domain: int = between(0, 0, 232)
+    """`ROS_DOMAIN_ID`; matters to rmw_zenoh alone."""
+    distro: str = one_of("jazzy", "humble", "iron", "jazzy", "kilted", "rolling")
+    """The robot's; matters to rmw_zenoh alone: Humble knows no hashes of types."""
+    namespace: str = _text("", "a ROS name", rf"({_TOPIC})?")
+    """Of topics without a leading slash; that of the robot, or of its bridge."""
+    node: str = _text("berth", "a ROS name", _NAME)
+    """Our name among the robot's nodes."""
+    cmd_vel: str = _text("cmd_vel", "a topic's name", _TOPIC)
+    """Takes geometry_msgs/msg/Twist."""
+    stamped: bool = False
+    """It takes TwistStamped instead (`ros2 topic info cmd_vel` says which); then the robot's clock must be ours."""
+    frame: str = ruled("base_link", "at most 64 characters", lambda value: len(value) <= 64)
+    """Frame of a TwistStamped."""
+    odom: str = _text("odom", "a topic's name", _TOPIC)
+    """Says nav_msgs/msg/Odometry, 10 times a second or more."""
+    battery: str = _text("", "a topic's name, or empty", rf"({_TOPIC})?")
+    """Says sensor_msgs/msg/BatteryState; empty = not read. TurtleBots: `battery_state`."""
+    bumper: str = _text("", "a topic's name, or empty", rf"({_TOPIC})?")
+    """Empty = not read. TurtleBot 4: `hazard_detection`."""
+    bumper_type: str = one_of(
+        "irobot_create_msgs/msg/HazardDetectionVector",
+        "irobot_create_msgs/msg/HazardDetectionVector",
+        "kobuki_ros_interfaces/msg/BumperEvent",
+        "std_msgs/msg/Bool",
+    )
+    """What it says."""
+    max_speed_mps: float = between(0.3, 0.01, 2.0)
+    """Either way. TurtleBot 3: 0.22 or 0.26, TurtleBot 4: 0.31."""
+    max_turn_rate_radps: float = between(60 * DEG, 0.01, 500 * DEG)
+    """Either way."""
+    silent_s: float = between(1.0, 0.2, 5.0)
+    """Without odometry for so long the robot is told to rest, and nothing moves until there is some again."""
+    late_s: float = between(0.5, 0.05, 2.0)
+    """Odometry that comes so much later than the quickest, by its stamps, counts for nothing."""
+    guard_s: float = between(0.4, 0.1, 2.0)
+    """Without a word of base for so long the device stops the robot by itself."""
+    watchdog_s: float = between(0.0, 0.0, 60.0)
+    """The robot's own: how long it drives on after its last command; 0 = not known. Find it out before you trust it."""
+    unattended_m: float = between(0.2, 0.01, 1.0)
+    """If `watchdog_s` is known: furthest that the robot may drive within it; limits its speed."""
+
+
 _PIONEER = DeviceKind("components.base.devices.pioneer:Robot", Pioneer, rest="components.base.devices.pioneer:rest")
-DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None, "pioneer": _PIONEER}
+_ROS2 = DeviceKind("components.base.devices.ros2:Robot", Ros2, rest="components.base.devices.ros2:rest")
+DEVICES: Mapping[str, DeviceKind | None] = {"simulator": None, "pioneer": _PIONEER, "ros2": _ROS2}
 INPUTS: Mapping[str, Input] = {
     "teleop": Port(Drive, Kind.COMMAND, optional=True),
     "grasper": Port(Drive, Kind.COMMAND, hz=8, optional=True, per_frame=True),

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from components.simulator.base import Twist
 from components.simulator.gripper import Gripper
-from components.simulator.world import World
+from tests.driven import Driven
 
 OPEN, CLOSE, FINGERS_STOP, UP, DOWN, LIFT_STOP, STORE, DEPLOY = range(1, 9)
 """Arguments of GRIPPER."""
@@ -37,25 +36,18 @@ class TwoMotors(Gripper):
         self.lift_moves, self.fingers_move = self.lift != before[0], self.fingers != before[1]
 
 
-class Body(World):
-    """A world that asks its robot, before each step, how fast the wheels shall turn."""
+class Body(Driven):
+    """A driven world with a gripper that is told as a Pioneer's is."""
 
     def __init__(self, params, start, time_ns):
         super().__init__(params, start, time_ns)
         self.gripper = TwoMotors(params)
         if params.begins == "fingertips":
             self.gripper.begin_lowered()
-        self.twist = lambda _time_ns: (0.0, 0.0)
-        self.before_step = lambda _time_ns: None
 
     def place(self, start):
         super().place(start)
         self.gripper = TwoMotors(self._params)
-
-    def step(self):
-        self.before_step(self.time_ns)
-        self.base.command(Twist(*self.twist(self.time_ns)), self.time_ns)
-        super().step()
 
     @property
     def gripper_byte(self):

@@ -10,16 +10,15 @@ import socket
 import sys
 import termios
 import threading
-import time
 import tty
 
 from components.simulator.params import Params
 from docking.starts import Start
+from tests.living import Living
 from tests.pioneer.body import Body
 from tests.pioneer.cameras import Canon, Sony
 from tests.pioneer.robot import Robot
 
-STEP_NS = 1_000_000_000 // 64
 _BYTES = 4096
 _SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 57600: termios.B57600,
            115200: termios.B115200}  # fmt: skip
@@ -96,46 +95,26 @@ class Network:
         self._listener.close()
 
 
-class Served:
-    """A robot that lives in a thread as long as the context. Its world may be looked at while `turn` is held."""
+class Served(Living):
+    """A robot at one end of a line."""
 
     def __init__(self, end, body=None, **robot):
+        super().__init__(body or Body(Params(), Start(0.0, 0.0, 50.0), 0))
         self.end = end
-        self.body = body or Body(Params(), Start(0.0, 0.0, 50.0), 0)
         self.robot = Robot(self.body, **robot)
         self.body.twist = self.robot.twist
-        self.turn = threading.Lock()
-        self._done = threading.Event()
-        self._thread = threading.Thread(target=self._live, daemon=True)
 
-    def _live(self):
-        began_ns = time.monotonic_ns() - self.body.time_ns
-        while not self._done.wait(0.003):
-            with self.turn:
-                now_ns = time.monotonic_ns() - began_ns
-                while self.body.time_ns + STEP_NS <= now_ns:
-                    self.body.step()
-                self.robot.hear(self.end.read(), now_ns)
-                said = self.robot.speak(now_ns)
-                if said:
-                    self.end.write(said)
+    def exchange(self, now_ns):
+        self.robot.hear(self.end.read(), now_ns)
+        said = self.robot.speak(now_ns)
+        if said:
+            self.end.write(said)
 
     def pull(self):
         with self.turn:
             self.end.pull()
 
-    @property
-    def v_mps(self):
-        with self.turn:
-            return self.body.base.v_mps
-
-    def __enter__(self):
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self._done.set()
-        self._thread.join()
+    def close(self):
         self.end.close()
 
 

@@ -11,10 +11,9 @@ from components.head.camera import Camera
 from components.head.canon import Canon
 from components.head.devices.pan_tilt import AUX_WAY_S
 from components.head.ports import PanTilt
-from components.simulator.beginning import first_start
-from components.simulator.component import ODOMETRY_STREAM, Simulator
 from components.simulator.world import SUBSTEP_NS
 from schemas.head_pb2 import HeadState
+from tests.driven_world import DrivenWorld
 from tests.pioneer import cameras
 from tests.pioneer.body import Body
 from tests.pioneer.robot import Robot
@@ -26,17 +25,16 @@ TURNS = 3
 _KEPT = 64
 
 
-class SerialWorld(Simulator):
+class SerialWorld(DrivenWorld):
     """What base says goes through the client, the line and the robot; what it reads comes back the same way.
 
     The camera hangs at the robot's auxiliary port. Its angles are known a moment late: of the moment that
     `wiring.encoder_latency_s` ago was, as the driver has come to know it.
     """
 
-    def _begin(self, time_ns):
-        body = Body(self._params, first_start(self._params, self._seed), time_ns)
-        scales = np.random.default_rng([self._seed, 0, ODOMETRY_STREAM]).normal(1.0, self._params.odometry_scale, 2)
-        body.odometry_scale = (float(scales[0]), float(scales[1]))
+    World = Body
+
+    def born(self, body, time_ns):
         inverted = self._params.wiring.tilt > 0.0
         self._client = Client(Pioneer(), time_ns)
         self._robot = Robot(body, {1: cameras.Canon(lambda: body.head, inverted=inverted)})
@@ -45,8 +43,6 @@ class SerialWorld(Simulator):
         self._reading = None
         self._angles = []
         body.twist, body.before_step = self._twist, self._step_line
-        self._world = body
-        return self._frame(body)
 
     def _twist(self, time_ns):
         """As the robot's wheels are wired."""
@@ -89,12 +85,11 @@ class SerialWorld(Simulator):
             return
         self._gate.answer(event.port, event.capture_ns)
 
-    def _frame(self, world):
+    def told(self, world, said):
         told = {"head": self._head(world.time_ns)}
         if self._reading is not None:
             told["base"] = _state(self._reading)
-        outputs = super()._frame(world)
-        return tuple(output._replace(message=told.get(output.port, output.message)) for output in outputs)
+        return told
 
     def _head(self, time_ns):
         if not self._angles:
