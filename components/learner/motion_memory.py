@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 
 LEAST_SAMPLES = 16
 """A shorter stretch of frames teaches nothing."""
+_USUAL = 2.0
+"""A mean square error of so many times the expected one is nothing: it is the largest of three, and noise."""
 _ROUGH, _FINE = 1.0, 0.05
 """How fast the rest wanders that is smoothed: without a model and with one."""
 
@@ -32,11 +34,14 @@ class MotionMemory:
     memory_s: float
     """Time constant of forgetting."""
     surprise: float
-    """A stretch whose mean square error is so many times what the model expects makes it forget the rest."""
+    """A stretch whose mean square error is so many times what the model expects makes it forget the rest, and so do
+    smaller errors that last."""
     fit: Fit | None = None
     """None until something was learned."""
     samples: int = 0
     """Frames learned from so far."""
+    suspicion: float = 1.0
+    """That the robot is another one: by how much the newest stretches together surprised more than is usual."""
     sums: NormalEquations = field(init=False)
 
     def __post_init__(self) -> None:
@@ -53,18 +58,18 @@ class MotionMemory:
             return False
         fresh = NormalEquations(self.sums.functions, self.period_s)
         fresh.add(Stretch(measured, self.smooth(measured, commands), commands))
-        changed = self.fit is not None and surprise(self.fit, fresh) > self.surprise
-        self.sums.fade(0.0 if changed else float(np.exp(-len(measured) * self.period_s / self.memory_s)))
+        kept = float(np.exp(-len(measured) * self.period_s / self.memory_s))
+        self.sums.fade(0.0 if self._has_changed(fresh) else kept)
         self.sums.include(fresh)
         self.samples += len(measured)
         self.fit = best_fit(self.sums, self.structures)
         return True
 
-    def take_over(self, sums: Mapping[str, NDArray[Any]], samples: int) -> None:
-        """Go on with sums that were saved; the fit follows from them."""
+    def take_over(self, sums: Mapping[str, NDArray[Any]], samples: int, suspicion: float) -> None:
+        """Go on with what was saved; the fit follows from the sums."""
         for name, own in self.sums.arrays().items():
             own[...] = sums[name]
-        self.samples = samples
+        self.samples, self.suspicion = samples, suspicion
         self.fit = best_fit(self.sums, self.structures) if samples > 0 else None
 
     def smooth(self, measured: Floats, commands: Floats) -> Floats:
@@ -76,3 +81,13 @@ class MotionMemory:
         rates = model.rates(rough, in_force(commands, model.delay_samples))
         expected = np.concatenate([np.zeros((1, 3)), np.cumsum(rates[:-1] * self.period_s, axis=0)])
         return smoothed(measured, expected, _FINE)
+
+    def _has_changed(self, fresh: NormalEquations) -> bool:
+        """Page's cumulative sum test (1954), its sum as a product: one large surprise, or smaller ones in a row."""
+        if self.fit is None:
+            return False
+        self.suspicion = max(1.0, self.suspicion * surprise(self.fit, fresh) / _USUAL)
+        changed = self.suspicion > self.surprise / _USUAL
+        if changed:
+            self.suspicion = 1.0
+        return changed

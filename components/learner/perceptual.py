@@ -40,7 +40,8 @@ class Planning:
     memory_s: float = 600.0
     """Time constant of forgetting."""
     surprise: float = 9.0
-    """A stretch of frames whose mean square error is so many times the expected one makes it forget what was before."""
+    """A stretch of frames whose mean square error is so many times the expected one makes it forget what was before,
+    and so do smaller errors that last."""
     trust_per_s: float = 0.3
     """Standard deviation of the rates, in rad/s and shares of the distance per second, up to which they are trusted."""
     known_per_s: float = 0.03
@@ -168,6 +169,7 @@ class Perceptual:
             "unsure": self._unsure,
             "fresh": self._fresh,
             "samples": self.memory.samples,
+            "suspicion": self.memory.suspicion,
             "planner": self.planner.to_plain(),
             "planned": None if planned is None else [planned.functions, planned.delay_samples, list(planned.noise)],
         }
@@ -197,13 +199,14 @@ class Perceptual:
         try:
             stretch = [_seen(row) for row in header["stretch"]]
             stage, samples = int(header["stage"]), int(header["samples"])
+            suspicion = float(header["suspicion"])
             unsure, fresh = bool(header["unsure"]), bool(header["fresh"])
             planned = None if header["planned"] is None else _model(header["planned"], arrays)
             place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"learner state is incomplete or mistyped: {error!r}") from error
         times_s = checked(arrays, "times_s", self.planner.times_s) if place["busy"] else self.planner.times_s
-        self.memory.take_over(sums, samples)
+        self.memory.take_over(sums, samples, suspicion)
         self.table, self.half_seconds = table, half_seconds
         self._stretch, self._stage, self._unsure, self._fresh = stretch, stage, unsure, fresh
         if planned is not None:

@@ -59,7 +59,8 @@ class Settings:
     memory_s: float = positive(600.0)
     """Ours only: time constant of forgetting."""
     surprise: float = positive(9.0)
-    """Ours only: motion whose mean square error is so many times the expected one makes it forget what was before."""
+    """Ours only: motion whose mean square error is so many times the expected one makes it forget what was before, and
+    so do smaller errors that last."""
     trust_per_s: float = positive(0.3)
     """Ours only: rates (rad/s; share of the distance per second) known within this are trusted; else the linear
     controller drives."""

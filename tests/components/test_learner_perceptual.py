@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from components.learner import motion_memory
 from components.learner.motion_memory import MotionMemory
 from components.learner.normal_equations import in_force
 from components.learner.perceptual import Perceptual, Planning, Seen
@@ -86,6 +87,33 @@ def test_a_changed_robot_is_noticed_and_the_old_one_forgotten():
     assert turn == pytest.approx(-0.05, abs=0.003)
 
 
+@pytest.mark.parametrize(
+    ("surprises", "forgets"),
+    [
+        ([9.1], True),
+        ([8.9], False),
+        ([5.9, 7.3], True),
+        ([3.0, 3.0, 3.0], False),
+        ([3.0, 3.0, 3.0, 3.0], True),
+        ([8.0, 0.1, 8.0, 0.1], False),
+        ([1.9] * 20, False),
+    ],
+)
+def test_a_large_surprise_or_smaller_ones_in_a_row_make_it_forget(monkeypatch, surprises, forgets):
+    memory, values = learned(Robot(), stretches=2), iter(surprises)
+    monkeypatch.setattr(motion_memory, "surprise", lambda *_: next(values))
+    before = float(memory.sums.count[0])
+    for seed in range(len(surprises)):
+        memory.learn(*frames(Robot(), 20 + seed, 40))
+    assert (memory.sums.count[0] < before) == forgets
+    assert memory.suspicion < memory.surprise
+
+
+def test_noise_is_no_reason_to_forget():
+    memory = learned(Robot(noise=(2 * DEG, 1 * DEG, 0.05)), "structure-learned", 4)
+    assert memory.sums.count[0] > 3 * 90 * math.exp(-4 * 100 * PERIOD_S / 600.0)
+
+
 def test_smoothing_takes_most_of_white_noise_and_leaves_a_line_as_it_is():
     rng = np.random.default_rng(3)
     line = np.linspace(0.0, 1.0, 80)[:, None] * np.array([1.0, -2.0, 0.5])
@@ -131,6 +159,13 @@ def test_a_saved_and_loaded_learner_goes_on_as_if_nothing_had_happened(cut):
     again.from_plain(header, arrays)
     fed(again, begin=cut)
     assert pack("x", *again.to_plain()) == pack("x", *whole.to_plain())
+
+
+def test_what_it_suspects_is_saved():
+    learner, again = fed(coarse()), coarse()
+    learner.memory.suspicion = 2.5
+    again.from_plain(*unpack(pack("x", *learner.to_plain()), "x"))
+    assert again.memory.suspicion == 2.5
 
 
 def test_a_damaged_state_changes_nothing():
