@@ -31,7 +31,7 @@ BENCHMARKS = {
     "fuzz_reader": "ten thousand spoiled recordings through everything that reads one",
     "fuzz_pioneer": "ten thousand spoiled byte streams through the readers of a Pioneer's line",
     "pioneer": "the learned policy through a Pioneer's serial protocol beside the direct simulation, 200 paired starts",
-    "ros2": "the learned policy through ROS 2 messages over both bridges beside the direct simulation, 50 paired starts",
+    "ros2": "the learned policy through ROS 2 messages of both bridges beside the direct simulation, 50 paired starts",
     "hardware": "wrong signs, units, beams and latencies: found and put right, by small motions; false alarms",
     "evaluation": "the frozen policy after 40 robot-minutes beside linear controllers, 500 paired starts",
     "minutes_live": "learned live in 5 robot-minutes, one speed to reverse: docked of 500 paired starts, forecasts",

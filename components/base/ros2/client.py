@@ -121,7 +121,6 @@ class Client:
             self._rest()
         if not self._silence and time_ns - self._heard_ns > self._params.silent_s * NS:
             self._silence = f"no odometry for {self._params.silent_s:g} s"
-            self._lateness = Lateness()
             self.words.append(f"{self._silence}; the robot is told to rest")
             self._rest()
         if self._silence and time_ns - self._told_ns >= _MUTE_NS:
@@ -147,6 +146,8 @@ class Client:
         return Sample(payload, self._bridge.attachment(self._sequence, wall_ns))
 
     def _take_odometry(self, odometry: Odometry, time_ns: int) -> None:
+        if self._silence and self._lateness.is_set_anew(odometry.stamp_ns, time_ns):
+            self._lateness = Lateness()
         late_s = self._lateness.late_s(odometry.stamp_ns, time_ns)
         if late_s is None:
             raise MalformedError("an older one came later")

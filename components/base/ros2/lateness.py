@@ -6,6 +6,10 @@ _DRIFT = 500e-6
 """So fast a quick message is forgotten: clocks run apart, and nothing must seem late for that."""
 
 
+_SET_NS = 60_000_000_000
+"""No message is so late: the other clock was set."""
+
+
 class Lateness:
     """Remembers the shortest way from the other clock to ours."""
 
@@ -13,6 +17,10 @@ class Lateness:
         self._shortest_ns: float | None = None
         self._at_ns = 0
         self._newest_ns: int | None = None
+
+    def is_set_anew(self, stamp_ns: int, arrival_ns: int) -> bool:
+        """Whether the other clock can not be the one that was known."""
+        return self._shortest_ns is not None and abs(arrival_ns - stamp_ns - self._shortest_ns) > _SET_NS
 
     def late_s(self, stamp_ns: int, arrival_ns: int) -> float | None:
         """Seconds of lateness; None = an earlier or the same one was here already, or it is older than that.
