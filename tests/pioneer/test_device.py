@@ -3,7 +3,6 @@
 import os
 import secrets
 import signal
-import time
 
 import pytest
 
@@ -12,34 +11,13 @@ from components.base.ports import Pioneer
 from runtime.contract import DeviceError
 from runtime.launch import load
 from runtime.supervise import Supervisor
-from schemas.drive_pb2 import BaseCommand
 from tests.pioneer.served import Network, Serial, Served
 from tests.runtime.system import run_until
+from tests.wheel import Wheel, come_to_rest
 
-DEADLINE_S = 30.0
 
-
-class Driven:
-    """A device that base's commands reach eight times a second."""
-
-    def __init__(self, params):
-        self.device = pioneer.Robot(params)
-        self.v_mps = 0.0
-        self.state = None
-        self._said_s = 0.0
-
-    def until(self, condition):
-        end_s = time.monotonic() + DEADLINE_S
-        while not condition():
-            assert time.monotonic() < end_s, self.state
-            if time.monotonic() - self._said_s > 0.125:
-                self._said_s = time.monotonic()
-                self.device.write(BaseCommand(v_mps=self.v_mps))
-            self.state = self.device.read(0.05) or self.state
-        return self
-
-    def ready(self):
-        return self.until(lambda: self.state is not None and not self.state.guard)
+def driven(params):
+    return Wheel(pioneer.Robot(params))
 
 
 @pytest.fixture(params=[Serial, Network])
@@ -49,44 +27,41 @@ def served(request):
 
 
 def test_a_robot_is_driven_and_stopped_at_the_end(served):
-    driven = Driven(Pioneer(port=served.end.port)).ready()
-    driven.v_mps = 0.1
-    driven.until(lambda: driven.state.v_mps > 0.09)
-    assert driven.state.watchdog_s == 2.0
-    driven.device.close()
-    end_s = time.monotonic() + DEADLINE_S
-    while served.v_mps:
-        assert time.monotonic() < end_s
-        time.sleep(0.01)
+    wheel = driven(Pioneer(port=served.end.port)).ready()
+    wheel.v_mps = 0.1
+    wheel.until(lambda: wheel.state.v_mps > 0.09)
+    assert wheel.state.watchdog_s == 2.0
+    wheel.device.close()
+    come_to_rest(served)
     assert not served.robot.open
 
 
 def test_a_robot_at_another_speed_is_found():
     with Served(Serial(baud=38400)) as served:
-        driven = Driven(Pioneer(port=served.end.port)).ready()
-        driven.device.close()
+        wheel = driven(Pioneer(port=served.end.port)).ready()
+        wheel.device.close()
 
 
 def test_a_connection_that_ends_is_told_and_made_anew():
     with Served(Network()) as served:
-        driven = Driven(Pioneer(port=served.end.port)).ready()
-        driven.v_mps = 0.1
-        driven.until(lambda: driven.state.v_mps > 0.05)
+        wheel = driven(Pioneer(port=served.end.port)).ready()
+        wheel.v_mps = 0.1
+        wheel.until(lambda: wheel.state.v_mps > 0.05)
         served.pull()
-        driven.until(lambda: driven.state.guard)
-        assert driven.state.fault == "not connected"
-        driven.v_mps = 0.0
-        driven.ready()
+        wheel.until(lambda: wheel.state.guard)
+        assert wheel.state.fault == "not connected"
+        wheel.v_mps = 0.0
+        wheel.ready()
         assert served.v_mps < 0.01
-        driven.device.close()
+        wheel.device.close()
 
 
 def test_a_cable_that_is_pulled_is_told(capsys):
     with Served(Serial()) as served:
-        driven = Driven(Pioneer(port=served.end.port)).ready()
+        wheel = driven(Pioneer(port=served.end.port)).ready()
         served.pull()
-        driven.until(lambda: driven.state.guard)
-        driven.device.close()
+        wheel.until(lambda: wheel.state.guard)
+        wheel.device.close()
         assert "has ended" in capsys.readouterr().out
 
 
@@ -119,7 +94,4 @@ def test_a_driver_that_is_killed_leaves_a_robot_at_rest_long_before_its_watchdog
             run_until(supervisor, lambda: False)
             assert supervisor.end_reason.startswith("base was killed by SIGKILL")
             assert served.robot.open, "its own watchdog would let it drive for a minute"
-            end_s = time.monotonic() + DEADLINE_S
-            while served.v_mps:
-                assert time.monotonic() < end_s
-                time.sleep(0.01)
+            come_to_rest(served)
