@@ -16,15 +16,15 @@ from typing import NamedTuple
 
 import zenoh
 
-from runtime.assignment import Assignment
+from runtime.assignment import READY_TIMEOUT_S, Assignment
 from runtime.bus import direct, open_peer
 from runtime.wire import Decoder, unpack_stamp
 from schemas.drive_pb2 import BaseCommand
 from schemas.truth_pb2 import Truth
 
 LAUNCH = Path(__file__).parent.parent / "launch" / "sim.toml"
-START_S = 120.0
-"""Longest wait for a system to drive: a first start compiles."""
+START_S = READY_TIMEOUT_S + 30.0
+"""Longest wait for a system to drive: a first start compiles; one that waits for a component in vain says so before."""
 _DRIVING_MPS = 0.08
 _LOOK_S = 0.002
 
@@ -50,11 +50,17 @@ class Bystander:
     def __init__(self, session: zenoh.Session, realm: str) -> None:
         self.commands: list[Seen] = []
         self.truths: list[Seen] = []
+        self.status_ns: dict[str, int] = {}
+        """Component -> monotonic time at which its newest status came; there is one a second."""
         for key, kind, rows in (
             ("base/actuate", BaseCommand, self.commands),
             ("simulator/truth", Truth, self.truths),
         ):
             session.declare_subscriber(f"{realm}/{key}", direct(_noter(kind, rows)))
+        session.declare_subscriber(f"{realm}/*/status", direct(self._note_status))
+
+    def _note_status(self, sample: zenoh.Sample) -> None:
+        self.status_ns[str(sample.key_expr).split("/")[-2]] = time.monotonic_ns()
 
     def drives(self) -> bool:
         """Whether the robot moves as fast as it does in a trial, and base commands it."""
@@ -124,6 +130,12 @@ class Watched:
     def left(self) -> list[str]:
         """Components that still run."""
         return [name for name, pid in self.pids.items() if is_alive(pid)]
+
+    def told(self) -> str:
+        """What its processes have written and what was seen of it, for whoever asks why it does not drive."""
+        logs = sorted(Path(f"/proc/{pid}/fd/1") for pid in self.look().values())
+        lines = [f"{log.readlink().stem}: {log.read_text(encoding='utf-8')[-500:]}" for log in logs if log.exists()]
+        return "\n".join([f"{len(self.seen.truths)} truths, {len(self.seen.commands)} commands", *lines])
 
     def end(self, timeout_s: float) -> tuple[int, str, str]:
         """(exit code, standard output, standard error) once it has ended."""

@@ -47,7 +47,7 @@ def drive(directory: Path, *more: str):
 
 
 def await_driving(system: Watched) -> None:
-    assert wait_until(lambda: system.seen.drives() or system.process.poll() is not None, START_S)
+    assert wait_until(lambda: system.seen.drives() or system.process.poll() is not None, START_S), system.told()
     assert set(system.look()) == NAMES
 
 
