@@ -83,6 +83,8 @@ def write(file: Path, changes: Sequence[Correction]) -> None:
     Raises:
         ConfigurationError: the file is not laid out so that this can be done safely, or can not be written.
     """
+    if not file.is_file():
+        raise ConfigurationError(f"{file}: must be a file of your own for --write; Berth's are not changed")
     text = file.read_text(encoding="utf-8")
     wanted = tomllib.loads(text)
     for component, param, value in changes:

@@ -17,6 +17,7 @@ from rich.table import Table
 from cli import correction
 from cli.correction import Correction
 from cli.inspection import Result
+from runtime.brought import launch_file
 from runtime.params import ConfigurationError
 from schemas.inspection_pb2 import Finding
 
@@ -25,7 +26,7 @@ _MARKS = {Finding.GOOD: "[green]right[/]", Finding.WRONG: "[red]wrong[/]", Findi
 
 def load_table(launch: Path) -> dict[str, Any]:
     """The launch file as it stands; `runtime.launch.load` has found it readable."""
-    return tomllib.loads(launch.read_text(encoding="utf-8"))
+    return tomllib.loads(launch_file(launch).read_text(encoding="utf-8"))
 
 
 def ask(prepare: str, *, yes: bool, simulated: bool) -> None:

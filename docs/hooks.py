@@ -7,7 +7,7 @@ from pathlib import Path
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
-from docs.reference import commands, components, messages  # the root is where `python -m mkdocs` is called
+from docs.reference import commands, components, licences, messages  # the root is where `python -m mkdocs` is called
 
 ROOT = Path(__file__).parents[1]
 
@@ -18,6 +18,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "reference/commands.md": commands.page(),
         "reference/components.md": components.page(),
         "reference/messages.md": messages.page(),
+        "reference/licences.md": licences.page(),
         "explanation/decisions.md": (ROOT / "DECISIONS.md").read_text(encoding="utf-8"),
         "explanation/changelog.md": (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"),
     }
