@@ -101,18 +101,26 @@ outputs = {{ device = "camera/image" }}
 """
 
 
-def launch_file(folder, port, launch=LAUNCH):
-    """A launch file of the PeopleBot with this robot's ports, in a realm of its own."""
+def launch_file(folder, launch, replaced):
+    """A launch file with other ports, in a realm of its own, whose camera is the eyes' socket in a folder.
+
+    Args:
+        folder: where it is put.
+        launch: the file as it is delivered.
+        replaced: words of it, and what stands there instead.
+    """
     text = launch.read_text(encoding="utf-8")
     (camera,) = re.findall(r"^\[component\.camera\].*?(?=^\[)", text, re.DOTALL | re.MULTILINE)
-    for before, after in (
-        (f'"berth/{launch.stem}"', f'"test/{secrets.token_hex(6)}"'),
-        ('"/dev/ttyUSB0"', f'"{port}"'),
-        ("/tmp/berth-aux", str(folder / "aux")),  # noqa: S108  (what the launch file says)
-        (camera, EYES.format(port=folder / "eyes")),
-    ):
+    own = {f'"berth/{launch.stem}"': f'"test/{secrets.token_hex(6)}"', camera: EYES.format(port=folder / "eyes")}
+    for before, after in {**own, **replaced}.items():
         assert before in text
         text = text.replace(before, after)
     file = folder / launch.name
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def peoplebot_file(folder, port):
+    """The PeopleBot's launch file with this robot's port."""
+    aux = "/tmp/berth-aux"  # noqa: S108  (what the launch file says)
+    return launch_file(folder, LAUNCH, {'"/dev/ttyUSB0"': f'"{port}"', aux: str(folder / "aux")})

@@ -8,7 +8,7 @@ import pytest
 from docking.angles import DEG
 from runtime.launch import load
 from runtime.supervise import Supervisor
-from tests.pioneer.session import DEADLINE_S, launch_file, peoplebot
+from tests.pioneer.session import DEADLINE_S, peoplebot, peoplebot_file
 
 pytestmark = pytest.mark.xdist_group("session")
 SETTINGS = ["pilot.train_s=0", "pilot.evaluation_trials=3", "pilot.evaluation_controller=lc"]
@@ -18,7 +18,7 @@ SLOW_S = 0.3
 
 def picked_up(folder, robot, watch):
     """Run the session until the robot holds the object; the supervisor."""
-    system = load(launch_file(folder, robot.end.port), SETTINGS, recording=folder / "session.mcap")
+    system = load(peoplebot_file(folder, robot.end.port), SETTINGS, recording=folder / "session.mcap")
     deadline_s = time.monotonic() + DEADLINE_S
     held, trials = False, set()
     supervisor = Supervisor(system)
