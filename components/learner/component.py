@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from components.learner import ports
+from components.learner.chain import Chain
 from components.learner.frame import Frame, Progress, action_of, percept_of
-from components.learner.holding import Holding
-from components.learner.join import Join
 from components.learner.methods import make_method
 from components.learner.methods.perceptual import PerceptualMethod
 from components.learner.methods.tabular import Tabular
@@ -31,8 +30,9 @@ _KIND = "learner component"
 class Learner:
     """Joins percept, trial and applied command by capture time, cuts them into transitions, learns, publishes.
 
+    Of several robots that share it each has ports of its own; all learn the same, and all get the same policy.
     A policy follows each frame that completed a transition which counted; a snapshot every so many trials, after the
-    last training trial and at the end of the run.
+    (first robot's) last training trial and at the end of the run.
     """
 
     Params = ports.Params
@@ -44,8 +44,7 @@ class Learner:
         self._params = params
         self._grid = Grid.of(params.task)
         self._method = _method_of(params)
-        self._join = Join(params.join_frames)
-        self._holding = Holding(params, self._grid)
+        self._chains = self._new_chains()
         self._version = 0
         self._kept_version = 0
         self._kept_trials = 0
@@ -54,8 +53,9 @@ class Learner:
         """Take a part of a frame; learn from the frames that are complete."""
         if event.port == STOP:
             return tuple(self._snapshot())
-        self._take(event)
-        return tuple(output for frame in self._join.ready() for output in self._learn(frame))
+        part, robot = ports.HEARD[event.port]
+        self._take(self._chains[robot], part, event)
+        return tuple(output for frame in self._chains[robot].join.ready() for output in self._learn(frame, robot))
 
     def save(self) -> bytes:
         """Everything."""
@@ -63,8 +63,7 @@ class Learner:
             "version": self._version,
             "kept_version": self._kept_version,
             "kept_trials": self._kept_trials,
-            "join": self._join.to_plain(),
-            "hold": self._holding.to_plain(),
+            "chains": [chain.to_plain() for chain in self._chains],
         }
         return pack(_KIND, header, {"method": np.frombuffer(self._method.save(), dtype=np.int8)})
 
@@ -75,45 +74,55 @@ class Learner:
             ValueError: it is not such a state; says why.
         """
         header, arrays = unpack(state, _KIND)
-        join, holding = Join(self._params.join_frames), Holding(self._params, self._grid)
+        chains = self._new_chains()
         try:
-            join.from_plain(header["join"])
-            holding.from_plain(header["hold"])
+            for chain, plain in zip(chains, header["chains"], strict=True):
+                chain.from_plain(plain)
             counts = [int(header[name]) for name in ("version", "kept_version", "kept_trials")]
             self._method.load(arrays["method"].tobytes())
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"learner state is incomplete or mistyped: {error!r}") from error
-        self._join, self._holding = join, holding
+        self._chains = chains
         self._version, self._kept_version, self._kept_trials = counts
 
-    def _take(self, event: Event) -> None:
-        message, capture_ns = event.message, event.capture_ns
-        if event.port == "percept":
+    def _new_chains(self) -> tuple[Chain, ...]:
+        return tuple(Chain.of(self._params, self._grid) for _ in range(ports.FLEET))
+
+    def _take(self, chain: Chain, part: str, event: Event) -> None:
+        message, capture_ns, join = event.message, event.capture_ns, chain.join
+        if part == "percept":
             percept = percept_of(
                 self._params, self._grid, message.visible, message.slope, message.pan_rad, message.tilt_rad
             )
-            self._join.add(capture_ns, "percept", percept)
-        elif event.port == "trial":
-            self._join.add(capture_ns, "progress", _progress(message))
-        elif event.port == "applied":
+            join.add(capture_ns, "percept", percept)
+        elif part == "trial":
+            join.add(capture_ns, "progress", _progress(message))
+        else:
             action = action_of(self._params, message.v_mps, message.omega_radps)
-            self._join.add(capture_ns, "action", action)
-            self._join.add(capture_ns, "command", (message.v_mps, message.omega_radps))
+            join.add(capture_ns, "action", action)
+            join.add(capture_ns, "command", (message.v_mps, message.omega_radps))
 
-    def _learn(self, frame: Frame) -> Iterator[Output]:
-        if self._improve(frame):
+    def _learn(self, frame: Frame, robot: int) -> Iterator[Output]:
+        if self._improve(frame, robot):
             self._version += 1
             yield Output("policy", self._policy(), frame.capture_ns)
-        if self._is_due(frame.progress):
+        if robot == 0 and self._is_due(frame.progress):
             yield from self._snapshot(frame.capture_ns)
-        if isinstance(self._method, PerceptualMethod):
-            yield Output("pace", LearnerPace(version=self._version), frame.capture_ns)
+        before_ns, self._chains[robot].newest_ns = self._pace_ns, frame.capture_ns
+        if isinstance(self._method, PerceptualMethod) and self._pace_ns > before_ns:
+            yield Output("pace", LearnerPace(version=self._version), self._pace_ns)
 
-    def _improve(self, frame: Frame) -> bool:
+    @property
+    def _pace_ns(self) -> int:
+        """Newest frame that was learned from, of the robot that is behind all others; -1 = none has been heard of."""
+        return min((chain.newest_ns for chain in self._chains if chain.newest_ns >= 0), default=-1)
+
+    def _improve(self, frame: Frame, robot: int) -> bool:
         """Whether the policy may have changed."""
         if isinstance(self._method, PerceptualMethod):
-            return self._method.feed(frame)
-        counted = [_observed(self._method, transition) for transition in self._holding.feed(frame)]
+            return self._method.feed(frame, robot)
+        transitions = self._chains[robot].holding.feed(frame)
+        counted = [_observed(self._method, transition) for transition in transitions]
         return any(counted)
 
     def _is_due(self, progress: Progress) -> bool:

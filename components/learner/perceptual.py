@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,11 +64,21 @@ class Seen(NamedTuple):
     """Executed from this frame on: m/s, rad/s."""
 
 
+@dataclass
+class OpenStretch:
+    """Frames in a row of one robot that are still to be learned from."""
+
+    frames: list[Seen] = field(default_factory=list)
+    stage: int = -1
+    """Names the trial, or the way back."""
+
+
 class Perceptual:
     """`feed` it every frame in order; `advance` lets it plan; `policy` is what came of it.
 
-    Frames in a row are one stretch; it ends where the robot changes between approaching and driving back, where the
-    object is not seen, and after `LONGEST_STRETCH` frames. Then it is learned from, and a new plan begins.
+    Robots that are built alike may share it: what one has seen, all know. Frames of one robot in a row are one stretch;
+    it ends where the robot changes between approaching and driving back, where the object is not seen, and after
+    `LONGEST_STRETCH` frames. Then it is learned from, and a new plan begins.
     """
 
     def __init__(self, planning: Planning, limits: Limits, actions: Actions) -> None:
@@ -79,28 +89,30 @@ class Perceptual:
         self.planner = Planner(limits, axes, np.array(actions), planning.period_s, back_s)
         self.table = np.full(axes.shape, UNKNOWN, dtype=np.int8)
         self.half_seconds = np.full(axes.shape, round(2 * LATE_S), dtype=np.int8)
-        self._stretch: list[Seen] = []
-        self._stage = -1
+        self._open: dict[int, OpenStretch] = {}
+        """By robot."""
         self._unsure = True
         self._fresh = False
         """Something was learned since the newest plan began."""
 
-    def feed(self, seen: Seen | None, stage: int) -> bool:
-        """One frame, None where the object was not seen; the stage names the trial, or the way back.
+    def feed(self, seen: Seen | None, stage: int, robot: int = 0) -> bool:
+        """One frame of a robot, None where the object was not seen; the stage names the trial, or the way back.
 
         Returns:
             Whether so much was learned that a new plan has begun.
         """
-        ends = seen is None or stage != self._stage or len(self._stretch) >= LONGEST_STRETCH
-        learned = self.close() if ends else False
-        self._stage = stage
+        stretch = self._open.setdefault(robot, OpenStretch())
+        ends = seen is None or stage != stretch.stage or len(stretch.frames) >= LONGEST_STRETCH
+        learned = self.close(robot) if ends else False
+        stretch.stage = stage
         if seen is not None:
-            self._stretch.append(seen)
+            stretch.frames.append(seen)
         return learned
 
-    def close(self) -> bool:
-        """Learn from the stretch that is open; True if a new plan has begun."""
-        stretch, self._stretch = self._stretch, []
+    def close(self, robot: int = 0) -> bool:
+        """Learn from the robot's stretch that is open; True if a new plan has begun."""
+        opened = self._open.setdefault(robot, OpenStretch())
+        stretch, opened.frames = opened.frames, []
         states = np.array([seen.state for seen in stretch]).reshape(-1, 3)
         commands = np.array([seen.command for seen in stretch]).reshape(-1, 2)
         learned = self.memory.learn(states, commands)
@@ -164,8 +176,10 @@ class Perceptual:
         """Header and arrays for `docking.arrays.pack`."""
         planned = self.planner.model
         header = {
-            "stretch": [[*seen.state, *seen.command] for seen in self._stretch],
-            "stage": self._stage,
+            "open": [
+                [robot, stretch.stage, [[*seen.state, *seen.command] for seen in stretch.frames]]
+                for robot, stretch in sorted(self._open.items())
+            ],
             "unsure": self._unsure,
             "fresh": self._fresh,
             "samples": self.memory.samples,
@@ -197,9 +211,8 @@ class Perceptual:
         if not ((table >= least) & (table < len(self.actions))).all():
             raise ValueError(f"table must be in {least}..{len(self.actions) - 1}")
         try:
-            stretch = [_seen(row) for row in header["stretch"]]
-            stage, samples = int(header["stage"]), int(header["samples"])
-            suspicion = float(header["suspicion"])
+            opened = {int(robot): OpenStretch([*map(_seen, rows)], int(stage)) for robot, stage, rows in header["open"]}
+            samples, suspicion = int(header["samples"]), float(header["suspicion"])
             unsure, fresh = bool(header["unsure"]), bool(header["fresh"])
             planned = None if header["planned"] is None else _model(header["planned"], arrays)
             place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
@@ -208,7 +221,7 @@ class Perceptual:
         times_s = checked(arrays, "times_s", self.planner.times_s) if place["busy"] else self.planner.times_s
         self.memory.take_over(sums, samples, suspicion)
         self.table, self.half_seconds = table, half_seconds
-        self._stretch, self._stage, self._unsure, self._fresh = stretch, stage, unsure, fresh
+        self._open, self._unsure, self._fresh = opened, unsure, fresh
         if planned is not None:
             self.planner.restore(planned, times_s, place)
 

@@ -41,12 +41,18 @@ class Params(Settings):
     """The whole state is published at the end of every so many trials, and at the end of the training."""
 
 
-INPUTS: Mapping[str, Input] = {
-    "percept": Port(Percept, Kind.STATE, hz=8, queue=512),
-    "trial": Port(Trial, Kind.EVENT, hz=8, queue=512),
-    "applied": Port(Applied, Kind.STATE, hz=8, queue=512),
+FLEET = 4
+"""So many robots may share one learner: `percept`, `trial` and `applied` are the first one's, `percept_2` ... the
+others'."""
+_PARTS = {"percept": (Percept, Kind.STATE), "trial": (Trial, Kind.EVENT), "applied": (Applied, Kind.STATE)}
+HEARD: Mapping[str, tuple[str, int]] = {
+    part if robot == 0 else f"{part}_{robot + 1}": (part, robot) for robot in range(FLEET) for part in _PARTS
 }
-_FRAME = ("percept", "trial", "applied")
+"""Input port -> what it tells of a frame, and which robot's frame."""
+INPUTS: Mapping[str, Input] = {
+    name: Port(*_PARTS[part], hz=8, queue=512, optional=robot > 0) for name, (part, robot) in HEARD.items()
+}
+_FRAME = tuple(HEARD)
 OUTPUTS: Mapping[str, Port] = {
     "policy": Port(Policy, Kind.EVENT, on=_FRAME),
     "snapshot": Port(Snapshot, Kind.EVENT, on=_FRAME),

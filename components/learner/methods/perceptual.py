@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,15 @@ _RAMP_MPS, _RAMP_S = 0.06, 0.75
 """After a change of speed by more a robot is slower or faster than commanded for so long: 0.2 m/s take it 0.67 s."""
 _SHOWN_TILT_SHARE = 0.5
 """The cells show the policy where cot(tilt) is halfway between the nearest and the farthest start."""
+
+
+@dataclass
+class Newest:
+    """What is remembered of a robot's newest frames."""
+
+    capture_ns: int = -1
+    speeds_mps: list[float] = field(default_factory=list)
+    """Commanded, this long: a ramp and one."""
 
 
 class PerceptualMethod:
@@ -52,21 +63,22 @@ class PerceptualMethod:
         self._shown_d = near + _SHOWN_TILT_SHARE * (far - near)
         room_rad = (settings.room_beta_rad, settings.room_alpha_rad)
         self.learner = Perceptual(planning, limits_of(task, room_rad, docking=settings.goal == "dock"), task.actions)
-        self._newest_ns = -1
-        self._speeds_mps: list[float] = []
-        """Commanded in the newest frames, this long: a ramp and one."""
+        self._newest: dict[int, Newest] = {}
+        """By robot."""
         self._compile()
 
-    def feed(self, frame: Frame) -> bool:
-        """One frame, in order; True if a new plan has become complete."""
-        gap = self._newest_ns >= 0 and frame.capture_ns - self._newest_ns > 1.5e9 * self._period_s
-        self._newest_ns = frame.capture_ns
+    def feed(self, frame: Frame, robot: int = 0) -> bool:
+        """One frame of a robot, each robot's in order; True if a new plan has become complete."""
+        newest = self._newest.setdefault(robot, Newest())
+        gap = newest.capture_ns >= 0 and frame.capture_ns - newest.capture_ns > 1.5e9 * self._period_s
+        newest.capture_ns = frame.capture_ns
         if gap:
-            self.learner.close()
-            self._speeds_mps.clear()
-        self._speeds_mps = [*self._speeds_mps, frame.command[0]][-round(_RAMP_S / self._period_s) - 1 :]
+            self.learner.close(robot)
+            newest.speeds_mps.clear()
+        newest.speeds_mps = [*newest.speeds_mps, frame.command[0]][-round(_RAMP_S / self._period_s) - 1 :]
         if frame.progress.training:
-            self.learner.feed(self._seen(frame), 2 * frame.progress.ended + frame.progress.learning)
+            stage = 2 * frame.progress.ended + frame.progress.learning
+            self.learner.feed(self._seen(frame, newest), stage, robot)
         return self.learner.advance(self.settings.layers_per_frame)
 
     def table(self, version: int = 0) -> PolicyTable:
@@ -97,8 +109,8 @@ class PerceptualMethod:
     def save(self) -> bytes:
         """The whole state."""
         header, arrays = self.learner.to_plain()
-        identity = {"method": self.settings.method, "newest_ns": self._newest_ns, "speeds_mps": self._speeds_mps}
-        return pack(_KIND, {**header, **identity}, arrays)
+        newest = [[robot, kept.capture_ns, kept.speeds_mps] for robot, kept in sorted(self._newest.items())]
+        return pack(_KIND, {**header, "method": self.settings.method, "newest": newest}, arrays)
 
     def load(self, state: bytes) -> None:
         """Take over what `save` gave, of a learner of the same task and settings.
@@ -109,24 +121,18 @@ class PerceptualMethod:
         header, arrays = unpack(state, _KIND)
         if header.get("method") != self.settings.method:
             raise ValueError(f"learner state is of {header.get('method')!r}; it must be {self.settings.method!r}")
-        newest_ns = header.get("newest_ns")
-        if type(newest_ns) is not int:
-            raise ValueError(f"learner state must have newest_ns; got {newest_ns!r}")
-        speeds_mps = header.get("speeds_mps")
-        if not (isinstance(speeds_mps, list) and all(type(speed) in {int, float} for speed in speeds_mps)):
-            raise ValueError(f"learner state must have speeds_mps; got {speeds_mps!r}")
+        newest = _newest(header.get("newest"))
         self.learner.from_plain(header, arrays)
-        self._newest_ns = newest_ns
-        self._speeds_mps = [float(speed) for speed in speeds_mps]
+        self._newest = newest
 
-    def _seen(self, frame: Frame) -> Seen | None:
+    def _seen(self, frame: Frame, newest: Newest) -> Seen | None:
         """What is learned from; left out is where the motors' response counts most, fast turns and changes of speed.
 
         They would be taken for a delay.
         """
         percept, (v, omega) = frame.percept, frame.command
         fast = not (abs(v) <= _FASTEST_MPS and abs(omega) <= _FASTER * self._turn_rate_radps)  # true for NaN
-        ramp = max(self._speeds_mps) - min(self._speeds_mps) > _RAMP_MPS
+        ramp = max(newest.speeds_mps) - min(newest.speeds_mps) > _RAMP_MPS
         if not percept.visible or fast or ramp:
             return None
         log = -math.log(math.tan(percept.tilt_rad))
@@ -152,3 +158,15 @@ class PerceptualMethod:
         times_s = 0.5 * self.learner.half_seconds.reshape(-1)[nodes]
         value = np.maximum(self.settings.goal_reward - times_s / self._period_s, 1e-3)
         return np.where((nodes >= 0) & (times_s < LATE_S), value, 0.0)
+
+
+def _newest(rows: Any) -> dict[int, Newest]:
+    """By robot, out of nested lists as JSON gives them back.
+
+    Raises:
+        ValueError: they are nothing of the kind.
+    """
+    try:
+        return {int(robot): Newest(int(capture_ns), [*map(float, speeds)]) for robot, capture_ns, speeds in rows}
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"learner state must have newest; got {rows!r}") from None
