@@ -9,14 +9,14 @@ from runtime.launch import load
 from runtime.params import ConfigurationError
 from tests.recorded_session import LAUNCH
 
-ROBOTS = ("peoplebot", "paper-robot")
+ROBOTS = {"peoplebot": "pioneer", "paper-robot": "pioneer", "ros2": "ros2"}
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_simulator_takes_the_place_of_a_robot_s_devices_and_nothing_else_changes(name):
     system = load(LAUNCH.with_name(f"{name}.toml"), clock="lockstep")
     made = simulated(system)
-    assert {"head (canon-vc-c4)", "base (pioneer)"} <= set(devices(system))
+    assert {"head (canon-vc-c4)", f"base ({ROBOTS[name]})"} <= set(devices(system))
     assert not has_world(system)
     assert (devices(made), has_world(made)) == ([], True)
     names = {spec.name for spec in system.components if not spec.tap}
