@@ -86,7 +86,7 @@ def run(streams: int, seed: int) -> tuple[int, int, int, int]:
             while more := frames.settle():
                 read += more
             for payload in read:
-                _understood(payload)
+                understood(payload)
         except Exception as error:  # noqa: BLE001  (what must not happen is counted and shown)
             crashes += 1
             sys.stderr.write(f"stream {number}: {type(error).__name__}: {error}\n")
@@ -95,7 +95,7 @@ def run(streams: int, seed: int) -> tuple[int, int, int, int]:
     return crashes, sent, missing, held
 
 
-def _understood(payload: bytes) -> None:
+def understood(payload: bytes) -> None:
     """Every reader of a payload."""
     for kind in (0x20, 0x32, 0x33, 0xE0, payload[0]):
         changed = bytes((kind,)) + payload[1:]

@@ -81,7 +81,7 @@ def berth() -> None:
     """Let a mobile robot learn to dock at an object it sees. `berth COMMAND -h` has an example of each command."""
 
 
-_Complaint: Any = typer.BadParameter.__mro__[2]
+COMPLAINT: Any = typer.BadParameter.__mro__[2]
 """What typer raises about a command line; it has no public name of its own."""
 
 
@@ -91,7 +91,7 @@ def main() -> None:
         sys.exit(typer.main.get_command(app)(standalone_mode=False))
     except ConfigurationError as error:
         sys.stderr.write(f"berth: {error}\n")
-    except _Complaint as complaint:
+    except COMPLAINT as complaint:
         text = complaint.format_message()
         sys.stderr.write(text + "\n" if "\n" in text else f"berth: {text}\n")  # no words at all: the whole help
     sys.exit(2)
