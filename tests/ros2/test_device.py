@@ -19,7 +19,6 @@ from tests.runtime.system import run_until
 from tests.wheel import Wheel, come_to_rest
 
 pytestmark = pytest.mark.xdist_group("live")
-BRIDGES = ("ros2dds", "rmw_zenoh")
 
 
 def at_the_wheel(served):
@@ -27,7 +26,7 @@ def at_the_wheel(served):
     return Wheel(ros2.Robot(params))
 
 
-@pytest.mark.parametrize("bridge", BRIDGES)
+@pytest.mark.parametrize("bridge", ["ros2dds", "rmw_zenoh"])
 def test_a_robot_without_a_timeout_is_driven_known_to_its_tools_and_stopped_at_the_end(bridge):
     with Served(bridge=bridge, timeout_s=None) as served:
         wheel = at_the_wheel(served).ready()
@@ -84,17 +83,16 @@ clock = "real"
 run = "tests.pioneer.commander"
 [component.base]
 run = "components.base"
-device = {{ kind = "ros2", endpoint = "{endpoint}", bridge = "{bridge}" }}
+device = {{ kind = "ros2", endpoint = "{endpoint}", bridge = "rmw_zenoh" }}
 inputs = {{ pilot = "commander/drive", device = "base/device" }}
 params = {{ commanders = ["pilot"] }}
 """
 
 
-@pytest.mark.parametrize("bridge", BRIDGES)
-def test_a_driver_that_is_killed_leaves_a_robot_at_rest_that_has_no_timeout_of_its_own(tmp_path, bridge):
-    with Served(bridge=bridge, timeout_s=None) as served:
+def test_a_driver_that_is_killed_leaves_a_robot_at_rest_that_has_no_timeout_of_its_own(tmp_path):
+    with Served(bridge="rmw_zenoh", timeout_s=None) as served:
         file = tmp_path / "robot.toml"
-        file.write_text(LAUNCH.format(realm=secrets.token_hex(6), endpoint=served.endpoint, bridge=bridge))
+        file.write_text(LAUNCH.format(realm=secrets.token_hex(6), endpoint=served.endpoint))
         with Supervisor(load(file)) as supervisor:
             run_until(supervisor, lambda: served.v_mps > 0.003)
             os.kill(supervisor.pids["base"], signal.SIGKILL)
