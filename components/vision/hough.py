@@ -3,7 +3,8 @@
 Canny's edge pixels of all three colours vote for lines (Duda and Hart 1972). The object stands on the table, so that
 the edge crosses its column below it, and nothing between the two is as long: of the lines there, the uppermost of those
 about as long as the longest is it; the others are the front's lower border, a rug, the floor. Each line is fitted to
-its pixels, moved along their columns to where the gradient peaks. Without an object nothing tells the edge from others.
+its pixels, moved along their columns to where the gradient peaks, and the edge's tilt is then told by all the pixels
+beside it (`band.py`). Without an object nothing tells the edge from others.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from components.vision import band
 from components.vision.blob import Blob
 from components.vision.edge import Line
 
@@ -80,7 +82,8 @@ def edge(image: Image, thing: Blob, column_px: float, length_min_px: float) -> E
         return None
     points = np.asarray(cv2.findNonZero(marks), np.float64).reshape(-1, 2)
     foot_px = thing.top_px + len(thing.mask) - 1 - BELOW_PX
-    return _first(voted, _Marks(np.asarray(smooth, np.uint8), points), (column_px, foot_px), length_min_px)
+    found = _first(voted, _Marks(np.asarray(smooth, np.uint8), points), (column_px, foot_px), length_min_px)
+    return found and found._replace(line=band.straightened(image, found.line, found.pixels))
 
 
 def _voted(marks: cv2.typing.MatLike, votes_min: int) -> Array:

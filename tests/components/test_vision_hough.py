@@ -16,6 +16,7 @@ from tests.components.test_vision_photographs import (
     GREEN,
     HEIGHT,
     MIDDLE,
+    ORANGE,
     PHOTOGRAPHS,
     WIDTH,
     can_texture,
@@ -129,11 +130,16 @@ def test_random_noise_breaks_nothing():
         assert found is None or np.isfinite(found).all()
 
 
-def table(image, row, slope, generator):
+BARE = ((WOOD, -40.0, 0.0), (SHADE, 0.0, 300.0))
+STRIPE_PX = 10.0
+STRIPED_TABLE = (*BARE, (ORANGE, 0.0, STRIPE_PX))
+
+
+def table(image, row, slope, generator, parts=BARE):
     """The photograph behind a table: its top 40 px high, its front to the image's lower border."""
     left, right = row - slope * MIDDLE[0], row + slope * MIDDLE[0]
     light = generator.uniform(0.75, 1.1)
-    for colour, above, below in ((WOOD, -40.0, 0.0), (SHADE, 0.0, 300.0)):
+    for colour, above, below in parts:
         corners = [(-2, left + above), (WIDTH + 1, right + above), (WIDTH + 1, right + below), (-2, left + below)]
         mask = np.full((round(below - above), WIDTH), 255, np.uint8)
         image, _ = put(
@@ -142,18 +148,49 @@ def table(image, row, slope, generator):
     return image
 
 
-@pytest.mark.parametrize("file", PHOTOGRAPHS, ids=lambda file: file.stem)
-def test_a_can_on_a_table_before_a_photograph_stands_behind_the_tables_edge(file):
+def cans_on_tables(file, count, parts=BARE):
+    """(image, row at the middle column, slope) of cans near the edge of a table before a photograph."""
     generator = np.random.default_rng(10)
-    for _ in range(6):
+    for _ in range(count):
         row, slope = generator.uniform(130, 200), generator.uniform(-0.3, 0.3)
-        image = table(photograph(file), row, slope, generator)
+        image = table(photograph(file), row, slope, generator, parts)
         centre, width = generator.uniform(80, 240), generator.uniform(14, 40)
         foot = row + slope * (centre - MIDDLE[0]) - generator.uniform(5, 12)
         left, right, top = centre - width / 2, centre + width / 2, foot - 2.25 * width
         corners = [(left, top), (right, top), (right, foot), (left, foot)]
         colours, mask = can_texture()
-        seen, _ = put(image, colours, mask, corners, generator, generator.uniform(0.7, 1.2))
+        yield put(image, colours, mask, corners, generator, generator.uniform(0.7, 1.2))[0], row, slope
+
+
+@pytest.mark.parametrize("file", PHOTOGRAPHS, ids=lambda file: file.stem)
+def test_a_can_on_a_table_before_a_photograph_stands_behind_the_tables_edge(file):
+    for seen, row, slope in cans_on_tables(file, 6):
         sight = EYES.look(seen)
         assert sight.border.slope == pytest.approx(slope, abs=0.01)
         assert sight.border.v_px == pytest.approx(row + slope * sight.spot.u_px - MIDDLE[1], abs=1.5)
+
+
+def off_rad(sight, slope):
+    return abs(np.arctan(sight.border.slope) - np.arctan(slope))
+
+
+def test_beside_a_stripe_lines_tell_the_slope_better_than_the_stripe_does():
+    lines, stripes, by_stripe = [], [], Eyes(Params())
+    for view in STRIPED.views(100):
+        image = decoded(view.data)
+        for eyes, edge, found in ((EYES, "hough", lines), (by_stripe, "stripe", stripes)):
+            sight = eyes.look(image)
+            found.append(off_rad(sight, STRIPED.edge(view.camera, sight.spot.u_px, edge)[1]))
+    assert np.percentile(lines, 95) <= np.percentile(stripes, 95)
+
+
+def test_before_photographs_lines_are_off_by_no_more_than_one_and_a_half_times_what_the_stripe_is():
+    lines, stripes, by_stripe = [], [], Eyes(Params())
+    for file in PHOTOGRAPHS:
+        for image, _, slope in cans_on_tables(file, 5, STRIPED_TABLE):
+            sight = by_stripe.look(image)
+            if sight.border is not None:  # where more of the photograph is orange it is passed over
+                stripes.append(off_rad(sight, slope))
+                lines.append(off_rad(EYES.look(image), slope))
+    assert len(lines) >= 25
+    assert np.percentile(lines, 95) <= 1.5 * np.percentile(stripes, 95)
