@@ -8,7 +8,7 @@ from typing import Any, cast
 from components.base import ports
 from components.base.arbiter import NOBODY, Arbiter, Wish
 from components.base.backing import Reading
-from components.base.drive import GONE, STOPPED, Drive
+from components.base.drive import EARLY_NS, GONE, STOPPED, Drive
 from components.base.motion import NS, STILL, Motion, is_sane
 from components.base.polarity import beams_read, odometry_read, wired
 from runtime import contract
@@ -37,7 +37,9 @@ class Base:
     def __init__(self, params: ports.Params, seed: int) -> None:
         del seed  # nothing is random here
         self._params = params
-        max_age_ns = round(params.max_age_s * NS)
+        # With the real clock a word stands until the tick that ends it.
+        early_ns = 0 if params.clock == "lockstep" else EARLY_NS
+        max_age_ns = round(params.max_age_s * NS) - early_ns
         self._arbiter = Arbiter(COMMANDERS, params.commanders, max_age_ns, params.begins_with)
         self._drive = Drive(params)
         self._state = BaseState()

@@ -11,7 +11,7 @@ from components.base.ports import Params
 
 GONE, GUARD, BUMPER, STOPPED, DEAD_MAN = "gone", "guard", "bumper", "stop", "dead-man"
 """Reasons for a stop, as `Applied.commander` names them."""
-_EARLY_NS = 30_000_000
+EARLY_NS = 30_000_000
 """A period of `tick` and its lateness: the stop is said before a command is too old, not after."""
 
 
@@ -63,7 +63,7 @@ class Drive:
         """Reason to say a stop now, between frames; None if there is none, or if it was said just now."""
         if self.answers_ns is None:
             return None
-        if time_ns + _EARLY_NS - self.answers_ns > self.params.max_age_s * NS:
+        if time_ns + EARLY_NS - self.answers_ns > self.params.max_age_s * NS:
             return self._repeated(time_ns)
         if self.guard:
             return GUARD if self.motion[:2] != (0.0, 0.0) else None

@@ -59,13 +59,16 @@ class Learner:
 
     def save(self) -> bytes:
         """Everything."""
+        return self._state(self._method.save())
+
+    def _state(self, method: bytes) -> bytes:
         header = {
             "version": self._version,
             "kept_version": self._kept_version,
             "kept_trials": self._kept_trials,
             "chains": [chain.to_plain() for chain in self._chains],
         }
-        return pack(_KIND, header, {"method": np.frombuffer(self._method.save(), dtype=np.int8)})
+        return pack(_KIND, header, {"method": np.frombuffer(method, dtype=np.int8)})
 
     def load(self, state: bytes) -> None:
         """Go on where `save` was called, with the same task and settings; on an error nothing is changed.
@@ -154,11 +157,14 @@ class Learner:
         )
 
     def _snapshot(self, capture_ns: int | None = None) -> Iterator[Output]:
-        """The whole state, if it has learned since the last one."""
+        """All that it knows, if it has learned since the last one."""
         if self._version > self._kept_version:
             self._kept_version = self._version
-            snapshot = Snapshot(version=self._version, table_sha256=self._method.digest(), state=self.save())
-            yield Output("snapshot", snapshot, capture_ns)
+            method = self._method
+            state = self._state(method.save(plan=False) if isinstance(method, PerceptualMethod) else method.save())
+            yield Output(
+                "snapshot", Snapshot(version=self._version, table_sha256=method.digest(), state=state), capture_ns
+            )
 
 
 def _method_of(params: ports.Params) -> Tabular | PerceptualMethod:

@@ -172,8 +172,8 @@ class Perceptual:
             table_sha256=self.digest(),
         )
 
-    def to_plain(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """Header and arrays for `docking.arrays.pack`."""
+    def to_plain(self, *, plan: bool = True) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Header and arrays for `docking.arrays.pack`; a plan that is being made is most of it, and can be left out."""
         planned = self.planner.model
         header = {
             "open": [
@@ -194,12 +194,12 @@ class Perceptual:
         }
         if planned is not None:
             arrays["planned"] = planned.theta
-        if self.planner.busy:
+        if self.planner.busy and plan:
             arrays["times_s"] = self.planner.times_s
         return header, arrays
 
     def from_plain(self, header: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Take over what `to_plain` gave; on an error nothing is changed.
+        """Take over what `to_plain` gave; a plan that was left out is begun anew. On an error nothing is changed.
 
         Raises:
             ValueError: it is nothing of the kind; says why.
@@ -218,11 +218,13 @@ class Perceptual:
             place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"learner state is incomplete or mistyped: {error!r}") from error
-        times_s = checked(arrays, "times_s", self.planner.times_s) if place["busy"] else self.planner.times_s
+        times_s = checked(arrays, "times_s", self.planner.times_s) if "times_s" in arrays else self.planner.times_s
         self.memory.take_over(sums, samples, suspicion)
         self.table, self.half_seconds = table, half_seconds
         self._open, self._unsure, self._fresh = opened, unsure, fresh
-        if planned is not None:
+        if planned is not None and place["busy"] and "times_s" not in arrays:
+            self.planner.begin(planned)
+        elif planned is not None:
             self.planner.restore(planned, times_s, place)
 
     def digest(self) -> bytes:

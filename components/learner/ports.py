@@ -37,8 +37,8 @@ class Params(Settings):
     """Frames further apart than this break a transition."""
     join_frames: int = between(8, 1, 64)
     """An incomplete frame is given up when so many newer ones are complete."""
-    snapshot_every_trials: int = positive(10)
-    """The whole state is published at the end of every so many trials, and at the end of the training."""
+    snapshot_every_trials: int = positive(1)
+    """What is known is published at the end of every so many trials, and at the end of the training: 0.3 MB."""
 
 
 FLEET = 4

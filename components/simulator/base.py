@@ -56,15 +56,15 @@ class Base:
         self.omega_radps = 0.0
         self.bumper = False
         self.rear_bumper = False
-        self._pending: deque[tuple[int, Twist]] = deque(maxlen=PENDING)
+        self._pending: deque[tuple[int, int, Twist]] = deque(maxlen=PENDING)
+        """(time of its effect, of its arrival, command)."""
         self._wish = REST
         self._heard_ns: int | None = None
 
     def command(self, twist: Twist, arrival_ns: int) -> None:
         """Take a command; it acts after the latency. One that the base can not do is a command to stand still."""
         effect_ns = arrival_ns + round(self._params.command_latency_s * 1e9)
-        self._pending.append((effect_ns, twist if self._possible(twist) else REST))
-        self._heard_ns = arrival_ns
+        self._pending.append((effect_ns, arrival_ns, twist if self._possible(twist) else REST))
 
     def _possible(self, twist: Twist) -> bool:
         """False for nan too."""
@@ -77,13 +77,15 @@ class Base:
         self.pose = pose
         self.v_mps = self.omega_radps = 0.0
         self.bumper = self.rear_bumper = False
+        if self._pending:
+            self._heard_ns = self._pending[-1][1]
         self._pending.clear()
         self._wish = REST
 
     def step(self, time_ns: int, dt_s: float) -> None:
         """Move from `time_ns` for `dt_s`."""
         while self._pending and self._pending[0][0] <= time_ns:
-            self._wish = self._pending.popleft()[1]
+            _, self._heard_ns, self._wish = self._pending.popleft()
         wish = REST if self._deaf(time_ns) else self._wish
         self.v_mps = _approach(self.v_mps, wish.v_mps, self._params.acceleration_mps2 * dt_s)
         self.omega_radps = _approach(
@@ -92,7 +94,10 @@ class Base:
         self._move(dt_s)
 
     def _deaf(self, time_ns: int) -> bool:
-        return self._heard_ns is None or time_ns - self._heard_ns > self._params.watchdog_s * 1e9
+        """A world that stood still and catches up has not heard yet what came meanwhile."""
+        arrivals = [self._heard_ns, *(arrival_ns for _, arrival_ns, _ in self._pending)]
+        newest_ns = max((at_ns for at_ns in arrivals if at_ns is not None and at_ns <= time_ns), default=None)
+        return newest_ns is None or time_ns - newest_ns > self._params.watchdog_s * 1e9
 
     def _move(self, dt_s: float) -> None:
         before_m = self.clearance_m(self.pose)

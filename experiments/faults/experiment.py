@@ -1,7 +1,7 @@
 """Faults of every process at random moments, and what holds nevertheless: processes on the bus, then folds alone.
 
-A seed is one session of real processes, shot at with signals and limits (`plan`), and many sessions of the same folds
-under a virtual clock, whose messages are dropped, delayed and doubled (`virtual`).
+A seed is one session of real processes, shot at with signals and limits (`plan`), and one of the same folds
+under a virtual clock, whose messages are lost, late and doubled (`tampering`).
 """
 
 from __future__ import annotations
@@ -16,12 +16,15 @@ from experiments.campaign import Job, Options
 from experiments.faults.plan import plan
 from experiments.faults.rules import Session, simulated_robot
 from experiments.faults.session import RECORDING, run_session
+from experiments.faults.tampering import Tampered
 from experiments.faults.timeline import Moved, Told, timeline
 from experiments.faults.verdict import Verdict, summary, verdict_of
 from experiments.form import Form
 
 NAME = "faults"
-SEEDS = 100
+SEEDS = 20
+"""Of six injections into processes each, and of 24 into folds."""
+SHELLS = ("live", "in-process")
 FORM = Form(
     tuple(field.name for field in fields(Verdict)),
     verdict_of,
@@ -32,12 +35,15 @@ FORM = Form(
 
 def jobs(options: Options) -> Sequence[Job]:
     """Two for each seed."""
-    return [{"seed": seed, "shell": shell} for seed in options.seeds_or(SEEDS) for shell in ("live",)]
+    return [{"seed": seed, "shell": shell} for seed in options.seeds_or(SEEDS) for shell in SHELLS]
 
 
 def run(job: Job) -> Sequence[Verdict]:
-    """One session; the evidence is kept where a promise was broken."""
-    seed, folder = int(job["seed"] or 0), Path(tempfile.mkdtemp(prefix="berth-faults-"))
+    """One session; the evidence of a live one is kept where a promise was broken."""
+    seed = int(job["seed"] or 0)
+    if job["shell"] == "in-process":
+        return tamper(seed)
+    folder = Path(tempfile.mkdtemp(prefix="berth-faults-"))
     found = shoot(seed, folder)
     if all(verdict.held for verdict in found):
         shutil.rmtree(folder)
@@ -50,6 +56,13 @@ def draw(rows: Sequence[Verdict], folder: Path) -> Sequence[Path]:
     """Nothing: the table says it all."""
     del rows, folder
     return ()
+
+
+def tamper(seed: int) -> list[Verdict]:
+    """A session of folds, tampered with as the seed says, and judged."""
+    session = Tampered(seed, simulated_robot())
+    session.run()
+    return list(session.verdicts(NAME, seed))
 
 
 def shoot(seed: int, folder: Path) -> list[Verdict]:

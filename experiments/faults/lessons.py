@@ -16,7 +16,7 @@ def trials_lost(file: Path, died_ns: int) -> int:
     """Trials that had ended before a learner died at `died_ns` and were not in the snapshot that it went on from.
 
     Raises:
-        LookupError: it was not started again.
+        StopIteration: the recording does not show that it was started again.
     """
     rows = list(Recording(file).messages({_TRIAL, _SNAPSHOT, _JOURNAL}))
     trials = [row for row in rows if row.topic == _TRIAL]
@@ -33,9 +33,7 @@ def _ended(trials: list[Logged], at_ns: int) -> int:
 
 def _taken_ns(rows: list[Logged], died_ns: int) -> int | None:
     """Capture time of the snapshot that the next run went on from; None = it started cold."""
-    first = next((row for row in rows if row.topic == _JOURNAL and row.time_ns > died_ns and _begins(row)), None)
-    if first is None:
-        raise LookupError("the learner was not started again")
+    first = next(row for row in rows if row.topic == _JOURNAL and row.time_ns > died_ns and _begins(row))
     entry = next(iter(entries([first.decoded()])))
     if entry.port != LOADED:
         return None

@@ -10,6 +10,8 @@ from itertools import pairwise
 from experiments.faults.timeline import Moved, Timeline, Told
 
 NS = 1_000_000_000
+_LEAST_FALL = 1e-9
+"""Less is rounding."""
 
 
 @dataclass(frozen=True)
@@ -101,11 +103,16 @@ def stop_s(robot: Robot, line: Timeline, at_ns: int) -> float | None:
 
 
 def _brakes_ns(robot: Robot, line: Timeline, at_ns: int) -> int | None:
-    """When the speed began to fall, from the first two truths between which it did; None if it never did."""
-    after = [truth for truth in line.truths if truth.at_ns >= at_ns - NS // 4]
-    for was, now in pairwise(after):
-        fall_mps = abs(was.v_mps) - abs(now.v_mps)
-        if now.at_ns > at_ns and fall_mps > 1e-9:
-            began_ns = now.at_ns - round(fall_mps / robot.acceleration_mps2 * NS)
-            return max(began_ns, was.at_ns)
+    """When its speed (of a robot that only turns: its turn rate) began to fall; None if it never did.
+
+    Told from the first two truths between which it fell.
+    """
+    first = max(0, bisect_right(line.truths, at_ns, key=lambda truth: truth.at_ns) - 1)
+    after = line.truths[first:]
+    drives = bool(after) and after[0].v_mps != 0.0
+    rate = robot.acceleration_mps2 if drives else robot.angular_acceleration_radps2
+    speeds = [(truth.at_ns, abs(truth.v_mps if drives else truth.omega_radps)) for truth in after]
+    for (before_ns, was), (now_ns, now) in pairwise(speeds):
+        if now_ns > at_ns and was - now > _LEAST_FALL:
+            return max(now_ns - round((was - now) / rate * NS), before_ns)
     return None

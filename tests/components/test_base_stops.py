@@ -38,6 +38,18 @@ def test_without_a_newer_frame_the_robot_stops_within_300_ms_of_the_last_ones_ca
     assert all(motion(output) == (0.0, 0.0, "stale") for _, output in said)
 
 
+@pytest.mark.parametrize("phase_ms", [0, 7, 19])
+def test_a_late_answer_moves_the_robot_no_longer_than_its_frame_is_young(phase_ms):
+    moved = 0
+    for age_ms in range(240, 330):
+        base = driving()
+        if motion(hand(base, "pilot", GO, 1100 * MS, (1100 + age_ms) * MS))[2] == "pilot":
+            moved += 1
+            first_ms = 1100 + age_ms - (age_ms + phase_ms) % 20 + 20
+            assert ticks(base, first_ms, 1500)[0][0] < 1400, age_ms
+    assert moved > 20, "an answer that can still be ended in time does move it"
+
+
 def test_the_stop_is_said_once_and_repeated_every_tenth_of_a_second():
     at = [ms for ms, _ in ticks(driving(), 1060, 2060)]
     assert at == list(range(1280, 2061, 100))

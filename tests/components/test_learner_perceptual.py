@@ -151,7 +151,7 @@ def test_a_plan_in_slices_is_the_plan_at_once():
     assert (whole.planner.times_s == sliced.planner.times_s).all()
 
 
-@pytest.mark.parametrize("cut", [30, 121, 122, 125])
+@pytest.mark.parametrize("cut", [30, 62, 121, 122, 125])
 def test_a_saved_and_loaded_learner_goes_on_as_if_nothing_had_happened(cut):
     whole = fed(coarse())
     header, arrays = unpack(pack("x", *fed(coarse(), end=cut).to_plain()), "x")
@@ -159,6 +159,17 @@ def test_a_saved_and_loaded_learner_goes_on_as_if_nothing_had_happened(cut):
     again.from_plain(header, arrays)
     fed(again, begin=cut)
     assert pack("x", *again.to_plain()) == pack("x", *whole.to_plain())
+
+
+def test_a_plan_that_was_left_out_is_begun_anew_and_comes_to_the_same():
+    learner, again = fed(coarse(), end=62), coarse()
+    assert learner.planner.busy
+    header, arrays = learner.to_plain(plan=False)
+    assert "times_s" not in arrays
+    again.from_plain(*unpack(pack("x", header, arrays), "x"))
+    learner.planner.finish()
+    again.planner.finish()
+    assert (again.planner.times_s == learner.planner.times_s).all()
 
 
 def test_what_it_suspects_is_saved():

@@ -49,6 +49,14 @@ def test_a_command_acts_after_its_latency():
     assert 0.1 < first <= 0.1 + 2 * STEP_S
 
 
+def test_a_world_that_stood_still_brakes_while_it_catches_up_with_the_commands_that_came_meanwhile():
+    base = free()
+    run(base, 1.0, Twist(0.1, 0.0))
+    base.command(Twist(0.0, 0.0), round(2e9))
+    trace = run(base, 1.0, begin_ns=64 * STEP_NS)
+    assert max(time_s for time_s, v, *_ in trace if v > 0.0) < 56 / 64 + 0.3 + 0.1 / 0.3 + 2 * STEP_S
+
+
 def test_it_brakes_by_itself_when_no_command_comes():
     base = free()
     run(base, 1.0, Twist(0.3, 0.5))
