@@ -13,13 +13,14 @@ from dataclasses import fields
 from pathlib import Path
 
 from experiments.campaign import Job, Options
-from experiments.faults.plan import plan
+from experiments.faults.plan import Injection, plan
 from experiments.faults.rules import Session, simulated_robot
 from experiments.faults.session import RECORDING, run_session
 from experiments.faults.tampering import Tampered
 from experiments.faults.timeline import Moved, Told, timeline
 from experiments.faults.verdict import Verdict, summary, verdict_of
 from experiments.form import Form
+from experiments.watched import Watched
 
 NAME = "faults"
 SEEDS = 20
@@ -44,7 +45,7 @@ def run(job: Job) -> Sequence[Verdict]:
     if job["shell"] == "in-process":
         return tamper(seed)
     folder = Path(tempfile.mkdtemp(prefix="berth-faults-"))
-    found = shoot(seed, folder)
+    found = judged(plan(seed), seed, folder)
     if all(verdict.held for verdict in found):
         shutil.rmtree(folder)
     else:
@@ -65,13 +66,16 @@ def tamper(seed: int) -> list[Verdict]:
     return list(session.verdicts(NAME, seed))
 
 
-def shoot(seed: int, folder: Path) -> list[Verdict]:
-    """A session of real processes, done to as the seed says, and judged."""
-    happened, watched = run_session(plan(seed), seed, folder)
-    origin_ns = happened.origin_ns
-    truths = [Moved(seen.capture_ns, seen.v_mps, seen.omega_radps) for seen in watched.seen.truths]
-    commands = [
-        Told(seen.capture_ns, seen.at_ns - origin_ns, seen.v_mps, seen.omega_radps) for seen in watched.seen.commands
-    ]
-    line = timeline(folder / RECORDING, truths, commands)
+def judged(injections: Sequence[Injection], seed: int, folder: Path) -> list[Verdict]:
+    """A session of real processes, done to as is said, and judged."""
+    happened, watched = run_session(injections, seed, folder)
+    line = timeline(folder / RECORDING, *watched_in(happened.origin_ns, watched))
     return list(Session(happened, line, folder / RECORDING, simulated_robot()).verdicts(NAME, seed))
+
+
+def watched_in(origin_ns: int, watched: Watched) -> tuple[list[Moved], list[Told]]:
+    """What a bystander saw, in session time."""
+    seen = watched.seen
+    truths = [Moved(one.capture_ns, one.v_mps, one.omega_radps) for one in seen.truths]
+    commands = [Told(one.capture_ns, one.at_ns - origin_ns, one.v_mps, one.omega_radps) for one in seen.commands]
+    return truths, commands

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
+from experiments.faults.lessons import POLICY, SNAPSHOT, forgotten
+from experiments.faults.lessons import TRIAL as TRIAL_KEY
 from experiments.faults.motion import NS, Robot, late_s, stale_s, stop_s
 from experiments.faults.plan import FOLDS, LEARNER, Injection
 from experiments.faults.timeline import COMMAND, TRUTH, Moved, Timeline, Told
@@ -23,8 +26,6 @@ WITHOUT_PROCESSES = 24
 _TAMPERED = ("lose", "delay", "double")
 _BEGIN_S, _RESTART_S, _BACK_S, _ALONE_S = 3.0, 3.0, 20.0, 1.2
 _LONGEST_GAP_S = 2.0
-_SAVED_S = 1.0
-"""A trial that has just ended may be on its way into a snapshot."""
 STEP_S = 1.0 / 64.0
 
 
@@ -67,10 +68,10 @@ def _drawn(rng: np.random.Generator) -> Injection:
 class Tampered:
     """A session that is run and judged."""
 
-    def __init__(self, seed: int, robot: Robot, count: int = WITHOUT_PROCESSES) -> None:
+    def __init__(self, seed: int, robot: Robot, count: int = WITHOUT_PROCESSES, overrides: Sequence[str] = ()) -> None:
         self._robot = robot
         self._placed = placed(seed, count)
-        self._virtual = Virtual(load(LAUNCH, clock="real", seed=seed), seed)
+        self._virtual = Virtual(load(LAUNCH, overrides, clock="real", seed=seed), seed)
         self._virtual.hear = self._hear
         self._virtual.ways = self._ways
         self._active: list[Placed] = []
@@ -78,7 +79,10 @@ class Tampered:
         self._commands: list[Told] = []
         self._ended: list[tuple[int, int]] = [(0, 0)]
         """(capture time, training trials that had ended)."""
-        self._snapshot: tuple[int, bytes] | None = None
+        self._learned_ns: list[int] = []
+        """When the learner that runs has said a policy."""
+        self._known_until_ns = 0
+        self._snapshot: bytes | None = None
         self._forgotten: dict[int, int] = {}
         """When the learner died -> trials that it has lost."""
 
@@ -133,13 +137,16 @@ class Tampered:
         else:
             self._virtual.kill(done.victim)
             if done.restarts:
-                self._forgotten[one.at_ns] = self._lost(one.at_ns)
+                found = forgotten(self._ended, self._learned_ns, self._known_until_ns, one.at_ns)
+                self._forgotten[one.at_ns] = found
 
     def _end(self, one: Placed) -> None:
         if one in self._active:
             self._active.remove(one)
         if one.injection.restarts:
-            self._virtual.seat(LEARNER, None if self._snapshot is None else self._snapshot[1])
+            self._virtual.seat(LEARNER, self._snapshot)
+            self._learned_ns.clear()
+            self._known_until_ns = self._virtual.now_ns
 
     def _ways(self, name: str, _: Sample) -> Sequence[int]:
         active = next((one for one in self._active if one.injection.victim == name), None)
@@ -149,25 +156,20 @@ class Tampered:
         return {"lose": (), "delay": (late_ns,), "double": (0, late_ns)}[active.injection.fault]
 
     def _hear(self, sample: Sample) -> None:
-        kind = message_class(sample.schema)
-        if kind is None or sample.key not in (TRUTH, COMMAND, "pilot/trial", "learner/snapshot"):
-            return
-        message = kind.FromString(sample.payload)
+        message = self._decoded(sample)
         if sample.key == TRUTH:
             self._truths.append(Moved(sample.capture_ns, message.v_mps, message.omega_radps))
         elif sample.key == COMMAND:
             now_ns = self._virtual.now_ns
             self._commands.append(Told(sample.capture_ns, now_ns, message.v_mps, message.omega_radps))
-        elif sample.key == "pilot/trial":
+        elif sample.key == TRIAL_KEY:
             self._ended.append((sample.capture_ns, message.ended))
-        else:
-            self._snapshot = (sample.capture_ns, sample.payload)
+        elif sample.key == POLICY:
+            self._learned_ns.append(sample.capture_ns)
+        elif sample.key == SNAPSHOT:
+            self._snapshot, self._known_until_ns = sample.payload, sample.capture_ns
 
-    def _lost(self, at_ns: int) -> int:
-        taken_ns = 0 if self._snapshot is None else self._snapshot[0]
-        before = _ended_by(self._ended, at_ns - round(_SAVED_S * NS))
-        return max(0, before - _ended_by(self._ended, taken_ns))
-
-
-def _ended_by(rows: Sequence[tuple[int, int]], at_ns: int) -> int:
-    return max((ended for capture_ns, ended in rows if capture_ns <= at_ns), default=0)
+    @staticmethod
+    def _decoded(sample: Sample) -> Any:
+        kind = message_class(sample.schema) if sample.key in (TRUTH, COMMAND, TRIAL_KEY) else None
+        return None if kind is None else kind.FromString(sample.payload)
