@@ -6,6 +6,7 @@ import base64
 import dataclasses
 import importlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,8 @@ from types import ModuleType
 from typing import Any, cast
 
 from runtime.params import ConfigurationError, build
+
+_PACKAGE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,8 @@ def ports_of(run: str, where: str = "run") -> ModuleType:
     Raises:
         ConfigurationError: there is no such component.
     """
+    if not _PACKAGE.fullmatch(run):
+        raise ConfigurationError(f"{where} must name a package with a ports.py; got {run!r}")
     try:
         return importlib.import_module(run + ".ports")
     except ModuleNotFoundError as missing:
