@@ -83,11 +83,11 @@ def _port(data: bytes) -> None:
 
 
 def _messages() -> Iterable[bytes]:
-    """One of each schema, out of a session."""
+    """One of each schema, out of a session if there is one in it."""
     stamp = bytes([1, 0, 0, 0, 0, 0, 0, 0] * (_STAMP_BYTES // 8))
     names = [schema.DESCRIPTOR.full_name for schema in _schemas()]
     found = {logged.schema: logged.payload for logged in Recording(ROOT / "recordings" / "docking.mcap").messages()}
-    return [bytes([names.index(name)]) + payload + stamp for name, payload in found.items() if name in names]
+    return [bytes([number]) + found.get(name, b"") + stamp for number, name in enumerate(names)]
 
 
 def _in_file(suffix: str, read: Callable[[Path], object]) -> Callable[[bytes], object]:

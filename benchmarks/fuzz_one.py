@@ -14,6 +14,8 @@ def main() -> None:
     """Never returns: libFuzzer ends the process, with 0 if nothing was found."""
     name, *options = sys.argv[1:]
     reader = READERS[name]
+    for seed in reader.seeds():  # imports and compilation are no hang
+        survives(reader, seed)
     atheris.Setup([sys.argv[0], *options], lambda data: survives(reader, data))
     atheris.Fuzz()
 
