@@ -29,6 +29,10 @@ _DEATH_S = 8.0
 """A fused component dies on its next message, a killed one at once."""
 
 
+class NeverMovedError(RuntimeError):
+    """The robot did not drive in time, so nothing was tried; on a busy machine a start may take too long."""
+
+
 @dataclass
 class Incident:
     """What was done, and what was seen of it from outside."""
@@ -210,7 +214,7 @@ def run_session(injections: Sequence[Injection], seed: int, directory: Path) -> 
         What happened, and what a bystander saw.
 
     Raises:
-        RuntimeError: the system does not start, or its robot never moves.
+        NeverMovedError: nothing could be tried.
     """
     clumsy = sorted({one.victim for one in injections if one.fault == "crash"})
     realm = f"faults/{os.getpid()}-{seed}"
@@ -228,5 +232,5 @@ def run_session(injections: Sequence[Injection], seed: int, directory: Path) -> 
         happened.origin_ns = shot_at.origin_ns
         shot_at.end(happened)
     if not happened.incidents:
-        raise RuntimeError(f"the robot never moved: {happened.reason}")
+        raise NeverMovedError(f"the robot never moved: {happened.reason}")
     return happened, system
