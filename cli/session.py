@@ -42,7 +42,7 @@ class Watch:
     """Follows a running session: scores its trials, shows progress, makes the summary."""
 
     def __init__(self, progress: Progress) -> None:
-        self.board = Scoreboard()
+        self.board = Scoreboard(keeps_paths=False)
         self.messages = 0
         self.lost = 0
         self.refused = 0

@@ -77,7 +77,13 @@ class Trial:
 class Scorer:
     """Folds frames into trials."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, keeps_paths: bool = True) -> None:
+        """Nothing was tried.
+
+        Args:
+            keeps_paths: of all trials; else of the newest alone, as a session needs that goes on for hours.
+        """
+        self._keeps_paths = keeps_paths
         self.trials: list[Trial] = []
         self.collisions = 0
         self._open: Trial | None = None
@@ -120,6 +126,8 @@ class Scorer:
         trial.ended_s = frame.time_s
         trial.outcome = frame.outcome
         trial.reached = trial.reached or frame.outcome == "REACHED"
+        if self.trials and not self._keeps_paths:
+            self.trials[-1].path = []
         self.trials.append(trial)
         return trial
 

@@ -26,8 +26,9 @@ def is_sane(message: Trial | Truth) -> bool:
 class Scoreboard:
     """Pairs `Trial` and `Truth` by capture time and feeds a `Scorer`."""
 
-    def __init__(self) -> None:
-        self.scorer = Scorer()
+    def __init__(self, *, keeps_paths: bool = True) -> None:
+        """No trial yet; `keeps_paths` as of `Scorer`."""
+        self.scorer = Scorer(keeps_paths=keeps_paths)
         self.robot_s = 0.0
         self.trial: Trial | None = None
         """The newest one."""

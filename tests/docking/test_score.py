@@ -8,8 +8,8 @@ STILL = Frame(0.0, "EVALUATE", "APPROACH", 0, 0, "NONE", False, "greedy", -1.5, 
               False, False)  # fmt: skip
 
 
-def run(*changes):
-    scorer = Scorer()
+def run(*changes, **options):
+    scorer = Scorer(**options)
     for index, change in enumerate(changes):
         scorer.frame(STILL._replace(time_s=index * 0.125, **change))
     return scorer
@@ -57,6 +57,12 @@ def test_a_trial_knows_where_and_when_it_began():
     assert trial.start == (0.3, 0.0, 1.7)
     assert (trial.began_s, trial.ended_s) == (0.0, 0.375)
     assert len(trial.path) == 3
+
+
+def test_a_session_of_hours_keeps_the_way_of_its_newest_trial_alone():
+    trials = [{}, {}, ENDED, {"number": 1, "ended": 1}, {"number": 1, "ended": 1}, {**ENDED, "ended": 2}]
+    assert [len(trial.path) for trial in run(*trials).trials] == [2, 2]
+    assert [len(trial.path) for trial in run(*trials, keeps_paths=False).trials] == [0, 2]
 
 
 def test_the_last_trial_counts_once_though_the_session_finishes_with_it():
