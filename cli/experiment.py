@@ -21,7 +21,7 @@ NAME = Annotated[
     str,
     typer.Argument(
         help="ceiling, table2, curves, trajectories, schools, docking-law, ablation, paper-robot, "
-        "minutes, minutes-two-speeds, minutes-reverse, minutes-changed, minutes-mid-session, faults.",
+        "minutes, minutes-two-speeds, minutes-reverse, minutes-changed, minutes-mid-session, fleet, faults.",
         show_default=False,
     ),
 ]

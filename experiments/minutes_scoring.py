@@ -31,9 +31,12 @@ class Driven(NamedTuple):
 
 
 def grid_policy_times(
-    policy: GridPolicy, robot: Robot, problem: Problem, starts: Starts, rng: np.random.Generator
+    policy: GridPolicy | None, robot: Robot, problem: Problem, starts: Starts, rng: np.random.Generator
 ) -> Floats:
-    """Time to the goal from each start, `[N]` s; inf where the sink or the limit comes first. Truth decides."""
+    """Time to the goal from each start, `[N]` s; inf where the sink or the limit comes first. Truth decides.
+
+    Without a policy the linear controller drives.
+    """
     times = np.full(len(starts), np.inf)
     for sample, driven in enumerate(drives(policy, robot, problem, starts, rng)):
         times[driven.robots[driven.verdicts == 1]] = sample * problem.sampling_s
@@ -41,7 +44,7 @@ def grid_policy_times(
 
 
 def drives(
-    policy: GridPolicy, robot: Robot, problem: Problem, starts: Starts, rng: np.random.Generator
+    policy: GridPolicy | None, robot: Robot, problem: Problem, starts: Starts, rng: np.random.Generator
 ) -> Iterator[Driven]:
     """Every sampling period of a robot from each start, until none drives or the limit has come."""
     poses = poses_of(points_of(starts.beta_rad, starts.alpha_rad, starts.d_m))

@@ -105,13 +105,30 @@ def law_of(problem: Problem) -> Linear:
 
 
 class Trainee:
-    """One robot, its learner and its clock. Trials as the pilot runs them, driving back included."""
+    """One robot, its learner and its clock. Trials as the pilot runs them, driving back included.
 
-    def __init__(self, robot: Robot, problem: Problem, planning: Planning, seed: int) -> None:
-        self.robot, self.problem = robot, problem
-        self.rng = np.random.default_rng([seed, 6])
+    Args:
+        robot: what it is not told.
+        problem: what is to be learned.
+        planning: how.
+        seed: of its starts and its noise.
+        number: of a robot that shares the learner of another.
+        learner: that it shares; None = its own.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        problem: Problem,
+        planning: Planning,
+        seed: int,
+        number: int = 0,
+        learner: Perceptual | None = None,
+    ) -> None:
+        self.robot, self.problem, self.number = robot, problem, number
+        self.rng = np.random.default_rng([seed, 6, number] if number else [seed, 6])
         self.limits = perceptual_limits(problem, robot)
-        self.learner = Perceptual(planning, self.limits, problem.actions)
+        self.learner = learner or Perceptual(planning, self.limits, problem.actions)
         self.samples = self.trials = 0
         self._rules = Rules.of(Params(), seed)
         self._drivetrain = Drivetrain(robot, 1)
@@ -128,7 +145,7 @@ class Trainee:
         for stop in minutes:
             while self.samples * self.problem.sampling_s < 60.0 * stop:
                 self.sample()
-            self._plan()
+            self.plan()
             fit, policy = self.learner.memory.fit, self.learner.policy()
             if fit is None or policy is None:
                 raise RuntimeError(f"nothing was learned in {stop} minutes")
@@ -146,7 +163,7 @@ class Trainee:
         state = (float(percept[0]), float(percept[1]), float(percept[2]))
         self._change_stage(state)
         command = self._command(percept)
-        self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None))
+        self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None), self.number)
         self._pose = self._drivetrain.drive(self._pose, np.array([command]), self.problem.sampling_s)
         self.samples += 1
 
@@ -161,7 +178,7 @@ class Trainee:
         self._turning = self._turning or reverse.is_far_enough(_sight(state), self._back)
         there = self._turning and reverse.has_turned(self._rules, _sight(state), self._back)
         if there or late > _REVERSE_S:
-            self._plan()
+            self.plan()
             self._back, self._began, self._chooser = None, self.samples, self._new_chooser()
             self.trials += 1
 
@@ -173,9 +190,9 @@ class Trainee:
         wish = move(self._rules, _sight(tuple(percept.tolist())), self._back)
         return wish.v_mps, wish.omega_radps
 
-    def _plan(self) -> None:
-        """Learn from the way back and plan to the end: what takes a second is over before the next trial."""
-        self.learner.close()
+    def plan(self) -> None:
+        """Learn from the newest way and plan to the end: what takes a second is over before the next trial."""
+        self.learner.close(self.number)
         while self.learner.planner.busy:
             self.learner.advance(self.learner.planner.axes.d_nodes)
 

@@ -23,6 +23,7 @@ EXPERIMENTS: Mapping[str, str] = {
     "minutes-reverse": "experiments.minutes_reverse",
     "minutes-changed": "experiments.minutes_changed",
     "minutes-mid-session": "experiments.minutes_mid_session",
+    "fleet": "experiments.fleet",
     "faults": "experiments.faults.experiment",
 }
 """Name on the command line: module with `NAME`, `jobs`, `run` and `draw`."""

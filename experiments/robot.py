@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 HEIGHT_M = 0.45
 """Camera above the object, of the simulated robot. Only the robot knows it."""
-_HEAD_BEHIND_S = 0.2
+HEAD_BEHIND_S = 0.2
 """By how much the head lags behind an object that moves steadily; the tracker's head needs less."""
 
 
@@ -25,6 +25,8 @@ _HEAD_BEHIND_S = 0.2
 class Robot:
     """What a learner is not told."""
 
+    speed_gain: float = 1.0
+    """Speed executed per speed commanded: wheels that are larger or smaller than they were."""
     turn_gain: float = 1.0
     """Turn rate executed per turn rate commanded."""
     drift_radpm: float = 0.0
@@ -44,7 +46,7 @@ class Robot:
 
     def executed(self, commands: Floats) -> Floats:
         """Speed and turn rate `[N, 2]` of commands `[N, 2]`, m/s and rad/s."""
-        v, omega = commands[:, 0], commands[:, 1]
+        v, omega = self.speed_gain * commands[:, 0], commands[:, 1]
         return np.stack([v, self.turn_gain * omega + self.drift_radpm * v], axis=1)
 
     def actions(self, commanded: Actions) -> Actions:
@@ -62,7 +64,7 @@ class Robot:
 
     def percepts(self, poses: Floats, motions: Floats, rng: np.random.Generator) -> Floats:
         """As `seen`, relative to the goal's beta and alpha, with noise; in motion `[N, 2]`, m/s and rad/s."""
-        found = self.seen(advanced(poses, motions, self.lead_s) if self.lead_s > 0.0 else poses)
+        found = self.seen(advanced(poses, motions, self.lead_s) if self.lead_s != 0.0 else poses)
         found[:, :2] -= self.goal[:2]
         if any(self.noise):
             found += rng.standard_normal(found.shape) * np.array(self.noise)
@@ -81,7 +83,7 @@ ROBOTS: Mapping[str, Robot] = {
     "150 ms delay": Robot(delay_samples=0.15 / 0.125),
     "pan zero off 3 deg": Robot(camera_yaw_rad=3 * DEG),
     "camera aside": Robot(camera_left_m=0.05, camera_yaw_rad=3 * DEG),
-    "focal length x1.3": Robot(lead_s=0.3 * _HEAD_BEHIND_S),
+    "focal length x1.3": Robot(lead_s=0.3 * HEAD_BEHIND_S),
     "noisy percepts": Robot(noise=(2 * DEG, 1 * DEG, 0.05)),
 }
 """By name. Percepts are angles of the head, so a focal length is only in what the head has not turned yet. This is the

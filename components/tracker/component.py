@@ -6,6 +6,7 @@ import math
 
 from components.tracker import ports
 from components.tracker.core import Aim, Seen, State, Tuning, begun, follow
+from components.tracker.height import at_share
 from components.tracker.join import Reading, Sight
 from components.tracker.snapshot import loaded, saved
 from runtime.contract import Event, Output
@@ -73,11 +74,12 @@ class Tracker:
             self._state.base.command(time_ns + self._latency_ns, applied.v_mps, applied.omega_radps)
 
     def _outputs(self, aim: Aim, seen: Seen, capture_ns: int, exposure_ns: int) -> tuple[Output, Output]:
+        slope, tilt_rad = at_share(seen.slope, seen.depression_rad, self._tuning.params.height_share)
         percept = Percept(
             visible=seen.visible,
-            slope=seen.slope,
+            slope=slope,
             pan_rad=seen.bearing_rad,
-            tilt_rad=seen.depression_rad,
+            tilt_rad=tilt_rad,
             capture_time_ns=exposure_ns,
             pan_error_px=seen.u_px,
             tilt_error_px=seen.v_px,

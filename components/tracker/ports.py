@@ -49,6 +49,10 @@ class Params:
     slope_at_centre: bool = True
     """The percept's slope is the one that the edge would show at the image centre, so that it is exactly
     tan(beta) sin(tilt); false = as measured in the image, which reads beta too large where the edge is low."""
+    height_share: float = between(1.0, 0.2, 5.0)
+    """Height of the camera over the object, as a share of that of the robot that the task was shown to: the tangent of
+    the tilt that this robot reads at the pick-up over that of the task's. Percepts are given as that robot reads them,
+    so that robots which differ can share a policy."""
     edge_memory_frames: int = between(3, 0, 80)
     """Frames without a table edge for which the last slope still counts."""
 
