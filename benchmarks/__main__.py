@@ -22,6 +22,7 @@ BENCHMARKS = {
     "speed": "lockstep on the bus and in one process against real time",
     "latency": "frame to command against a bare chain of as many processes",
     "stopping": "Ctrl-C and kill -9 of each process: how fast the robot stops",
+    "networks": "commands beside pictures on a bad link; a robot driven through a killed laptop, loss and a cut",
     "recorder": "what the recorder costs and loses, and what a kill -9 costs",
     "soak": "an hour in real time, eight hours in lockstep: memory of each process, messages lost, rates",
     "view": "an hour of `berth view` beside a robot in real time: memory of the viewer's processes",

@@ -89,6 +89,15 @@ def open_client(endpoint: str, zid: str) -> zenoh.Session:
         raise ConnectionError(_reason(error)) from None
 
 
+def is_listened_on(endpoint: str) -> bool:
+    """Whether somebody accepts connections there."""
+    try:
+        with socket.create_connection(_address(endpoint), timeout=1.0):
+            return True
+    except OSError:
+        return False
+
+
 def free_endpoint() -> str:
     """An endpoint on loopback that nobody listened on a moment ago."""
     with socket.socket() as probe:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from types import TracebackType
 from typing import Self
 
-from runtime.bus import direct, open_observer, parse_ready_key, ready_keys
+from runtime.bus import direct, is_listened_on, open_observer, parse_ready_key, ready_keys
 from runtime.door import FAILURE, Door, Lane
 from runtime.inbox import Arrival, Inbox, Notice
 from runtime.joining import await_links
@@ -35,6 +35,7 @@ class Listener:
         Raises:
             ConfigurationError: the system is not there any more.
         """
+        self._endpoint = run.endpoint
         self._inbox = Inbox()
         self._door = Door(self._inbox)
         self._presence = Presence((_SUPERVISOR,))
@@ -78,10 +79,10 @@ class Listener:
 
     @property
     def is_over(self) -> bool:
-        """Whether the system has ended."""
+        """Whether the system has ended: its supervisor is away, and not only late on a machine that is too busy."""
         there = bool(self._presence.runs(LISTENS, _SUPERVISOR))
         self._began |= there
-        return self._began and not there
+        return self._began and not there and not is_listened_on(self._endpoint)
 
     @property
     def refused(self) -> int:

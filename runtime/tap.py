@@ -23,6 +23,8 @@ _BUSY_NS = 20_000_000
 """A bus that never falls silent must not keep the tap from its ticks: a recorder flushes by them."""
 _FAREWELL_S = 0.4
 """How long the last messages of the others are waited for after the stop."""
+LEAVE_OUT = "leave_out"
+"""A tap's parameter: keys that it does not ask for. What nobody on the other host asks for does not cross the link."""
 _SLICE_S = 0.005
 """A tap looks into its inbox this often. Waking it for each message would cost a third more of its time (measured)."""
 
@@ -48,10 +50,12 @@ class Tap:
         self._log_times = LogTimes()
         self._clock = PacedClock(station.assignment.origin_ns, system.pace or 1.0)
         box = station.inbox.box("bus", _QUEUE)
-        for key, schema, publisher in known_keys(system):
-            if publisher != station.spec.name:
-                station.lane(box, key, schema, publisher)
-        station.subscribe("**")
+        left_out = frozenset(station.spec.params.get(LEAVE_OUT, ()))
+        others = [row for row in known_keys(system) if row[2] != station.spec.name and row[0] not in left_out]
+        for key, schema, publisher in others:
+            station.lane(box, key, schema, publisher)
+        for key in [key for key, _, _ in others] if left_out else ["**"]:
+            station.subscribe(key)
 
     def run(self) -> None:
         """Pass the barrier, hand over messages until asked to stop, then wait for those still under way."""

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import pytest
 
+from benchmarks.halves import APPROACH, FRAME_NS, LAUNCH, Echo, Halves, awaits_run_file, echoed, start
 from benchmarks.watched import START_S, wait_until
 from runtime.recording import Logged, Recording
-from tests.halves import APPROACH, FRAME_NS, LAUNCH, Echo, Halves, awaits_run_file, echoed, start
 from tests.machines import Cable, Machine, two_machines
 from tests.runtime.parts.commander.component import SPEED_MPS
 

@@ -15,7 +15,7 @@ from runtime.recording import Logged
 from runtime.runfile import Run
 from viewer.scene import Scene, launch_of
 from viewer.shown import Number, Shown, What
-from viewer.wiring import SCHEMAS
+from viewer.wiring import SCHEMAS, Wiring
 
 _SLICE_S = 0.05
 _FLUSH_NS = SECOND_NS // 10
@@ -50,9 +50,11 @@ def follow(run: Run, sink: Sink, hz: float, is_over: Callable[[], bool]) -> None
         ConfigurationError: the system is not there any more.
     """
     session = description(run)
-    scene = Scene(launch_of(session.system.text), picture_ns=round(SECOND_NS / hz))
+    launch = launch_of(session.system.text)
+    scene = Scene(launch, picture_ns=round(SECOND_NS / hz))
     sink.stands(scene.furniture())
-    keys = [key for key, schema in run.topics.items() if schema in SCHEMAS]
+    left_out = Wiring(launch).left_out
+    keys = [key for key, schema in run.topics.items() if schema in SCHEMAS and key not in left_out]
     with Listener(run, keys, block=False) as listener:  # a slow viewer loses messages; the robot never waits for it
         _show(listener, scene, sink, _clock(session), is_over)
     sink.flush()

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from runtime.recorded_launch import specs_of
+from runtime.tap import LEAVE_OUT
 
 _PORTS = {
     "image": "foxglove.CompressedImage",
@@ -29,18 +30,25 @@ class Wiring:
         """Read a resolved launch file of any release: nothing is taken for granted."""
         told = {TRIAL: launch.get("trial"), TRUTH: launch.get("truth")}
         self._keys = {schema: key for schema, key in told.items() if isinstance(key, str) and key}
+        self.left_out = _left_out(launch)
+        """What a recorder does not ask for, a viewer leaves alone, too: its preview is there."""
         for inputs in _inputs(launch):
             for port, schema in _PORTS.items():
-                if isinstance(inputs.get(port), str):
+                if isinstance(inputs.get(port), str) and inputs[port] not in self.left_out:
                     self._keys.setdefault(schema, inputs[port])
 
     def takes(self, topic: str, schema: str) -> bool:
         """Whether a message is to be shown."""
         if schema == STATUS:
             return True
-        if schema not in SCHEMAS:
+        if schema not in SCHEMAS or topic in self.left_out:
             return False
         return self._keys.setdefault(schema, topic) == topic
+
+
+def _left_out(launch: Mapping[str, Any]) -> frozenset[str]:
+    lists = [params.get(LEAVE_OUT) for spec in specs_of(launch) if isinstance(params := spec.get("params"), Mapping)]
+    return frozenset(key for keys in lists if isinstance(keys, list) for key in keys if isinstance(key, str))
 
 
 def _inputs(launch: Mapping[str, Any]) -> list[Mapping[str, Any]]:

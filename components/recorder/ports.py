@@ -24,6 +24,8 @@ class Params:
     """A chunk's end stalls the writer; 256 KiB keeps that below 2 ms (measured)."""
     compression: str = one_of("lz4", "lz4", "zstd", "none")
     """JPEG does not compress; lz4 costs least."""
+    leave_out: tuple[str, ...] = ()
+    """Keys that are not asked for: images that would fill a link to another host, while their preview crosses it."""
 
 
 INPUTS: Mapping[str, Input] = {}

@@ -133,10 +133,12 @@ def test_each_host_runs_its_components_and_knows_all():
 
 
 def test_two_machines_run_what_one_runs():
+    """And a preview, which only looks on."""
     one, two = load(SIM, clock="real"), load(SIM2)
     assert [(s.name, s.run, s.inputs, s.params) for s in one.components] == [
-        (s.name, s.run, s.inputs, s.params) for s in two.components
+        (s.name, s.run, s.inputs, s.params) for s in two.components if s.name != "preview"
     ]
+    assert "preview/image" not in {key for spec in two.components for key in spec.inputs.values()}
 
 
 @pytest.mark.parametrize("name", ["simulator", "vision", "head", "tracker", "pilot", "grasper"])

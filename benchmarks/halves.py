@@ -1,4 +1,4 @@
-"""The two halves of `launch/sim2.toml`, or of something like it, started on two machines for a test."""
+"""The two halves of `launch/sim2.toml`, or of something like it, started on two machines."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from benchmarks.machines import ROBOT_ADDRESS, ROOT, Cable, Machine
 from benchmarks.watched import START_S, wait_until
-from tests.machines import ROBOT_ADDRESS, ROOT, Cable, Machine
 
 FRAME_NS = 125_000_000
 APPROACH = "APPROACH"
@@ -19,10 +19,13 @@ LAUNCH = (ROOT / "launch" / "sim2.toml").read_text(encoding="utf-8")
 
 
 class Halves(NamedTuple):
+    """`berth run` of each host."""
+
     robot: subprocess.Popen[str]
     laptop: subprocess.Popen[str]
 
     def alive(self) -> bool:
+        """Whether both run."""
         return all(half.poll() is None for half in self)
 
     def interrupt(self) -> None:
@@ -36,7 +39,8 @@ class Halves(NamedTuple):
     def summaries(self) -> list[dict[str, Any]]:
         """Of both, which must end well."""
         outputs = self.outputs()
-        assert [half.returncode for half in self] == [0, 0], outputs
+        codes = [half.returncode for half in self]
+        assert codes == [0, 0], (codes, outputs)
         return [json.loads(out) for out, _ in outputs]
 
 
@@ -53,11 +57,21 @@ def start(
     recording = ("--record", str(directory / "laptop.mcap")) if record else ("--no-record",)
     common = ("--json", *recording, *guard, *words)
     robot = ("run", str(file), "--host", "robot", "--listen", there, *alone, *common)
-    laptop = ("run", str(file), "--host", "laptop", "--connect", there, *common)
-    return Halves(cable.robot.berth(*robot), cable.laptop.berth(*laptop))
+    return Halves(cable.robot.berth(*robot), _laptop(cable, file, there, *common))
+
+
+def rejoin(cable: Cable, directory: Path, halves: Halves, recording: Path) -> Halves:
+    """Start the laptop again, which has ended; without keys."""
+    words = ("--json", "--record", str(recording))
+    return halves._replace(laptop=_laptop(cable, directory / "two.toml", f"tcp/{ROBOT_ADDRESS}:7447", *words))
+
+
+def _laptop(cable: Cable, file: Path, there: str, *words: str) -> subprocess.Popen[str]:
+    return cable.laptop.berth("run", str(file), "--host", "laptop", "--connect", there, *words)
 
 
 def awaits_run_file(machine: Machine) -> None:
+    """Until tools find the system that runs there."""
     assert wait_until(lambda: list(machine.home.glob("berth/*.run.json")), START_S)
 
 
@@ -78,6 +92,7 @@ class Echo:
 
 @contextmanager
 def echoed(machine: Machine, key: str, file: Path) -> Iterator[Echo]:
+    """What comes on a key, as heard on a machine."""
     with file.open("w", encoding="utf-8") as stream:
         machine.berth("topic", "echo", key, "--json", output=stream)
         yield Echo(file)

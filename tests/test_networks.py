@@ -1,0 +1,38 @@
+"""Bad networks: the short form of `python -m benchmarks networks`."""
+
+import pytest
+
+from benchmarks.bad_network import BAD, RATE_BPS
+from benchmarks.probe import Aged, Load, Probe
+from tests.machines import two_machines
+
+pytestmark = pytest.mark.xdist_group("live")
+SECONDS = 5.0
+
+
+@pytest.fixture(scope="module")
+def aged(tmp_path_factory) -> dict[str, Aged]:
+    """By what the link carries beside commands: 2 Mbit/s, 5 % of packets lost, 50 ms of jitter."""
+    with two_machines(tmp_path_factory.mktemp("radio"), radio=True) as cable:
+        cable.narrow(RATE_BPS)
+        probe = Probe(cable)
+        cable.become(BAD)
+        return {pictures: probe.aged(Load(SECONDS, pictures)) for pictures in ("preview", "all")}
+
+
+def test_a_bad_link_loses_no_command_while_pictures_fill_it(aged):
+    """TCP repeats what the air has lost; the router drops pictures first."""
+    assert [len(found.ages_ms) / found.sent for found in aged.values()] == pytest.approx([1.0, 1.0], abs=0.1)
+
+
+def test_commands_overtake_the_pictures_that_wait(aged):
+    """Half of the commands are back in a third of the time that a picture takes one way; seen: a tenth."""
+    assert aged["all"].pictures > 0
+    assert aged["all"].percentile_ms(50) < aged["all"].picture_ms / 3
+
+
+def test_pictures_adapt_to_the_link(aged):
+    """Smaller ones are sooner there, and more of them."""
+    assert aged["preview"].pictures > 0
+    assert aged["preview"].picture_bytes < aged["all"].picture_bytes / 2
+    assert aged["preview"].picture_ms < aged["all"].picture_ms
