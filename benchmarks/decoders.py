@@ -7,6 +7,7 @@ import hashlib
 import importlib
 import os
 import random
+import struct
 import tempfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -18,6 +19,8 @@ import numpy as np
 from benchmarks import fuzz_pioneer
 from cli.main import COMPLAINT, app
 from components.base.pioneer.frame import Frames
+from components.base.ros2 import codec
+from components.base.ros2.odometry import odometry_of
 from components.vision import jpeg
 from docking.cells import Grid
 from docking.policy import PolicyTable
@@ -35,6 +38,7 @@ ROOT = Path(__file__).parent.parent
 _SIZE_PX = (320, 240)
 _DIGEST_BYTES = 32
 _STAMP_BYTES = 24
+_CDR = b"\0\1\0\0"
 _STATEFUL = ("tracker", "pilot", "learner")
 
 
@@ -131,6 +135,28 @@ def _serial(data: bytes) -> None:
         fuzz_pioneer.understood(payload)
 
 
+_ROS = (codec.BOOL, codec.KOBUKI, codec.HAZARDS, codec.BATTERY)
+
+
+def _ros(data: bytes) -> None:
+    """A ROS 2 base's messages; the first byte says which."""
+    which = data[0] % (len(_ROS) + 1) if data else 0
+    if which == len(_ROS):
+        odometry_of(data[1:])
+    else:
+        codec.decoded(_ROS[which], data[1:])
+
+
+def _ros_messages() -> Iterable[bytes]:
+    """Small ones by hand, and odometry with the longest of all layouts: 13 numbers of 8 bytes, and two times 36."""
+    header = bytes(8) + b"\x05\0\0\0odom\0"
+    battery = header + bytes(31) + b"\1\1\1\1" + bytes(8) + b"\1\0\0\0\0" + bytes(3) + b"\1\0\0\0\0"
+    small = (b"\1", b"\1\1", header + bytes(7), battery)
+    pose = struct.pack("<7d", 1.0, 2.0, 0.0, 0.0, 0.0, 0.6, 0.8) + bytes(36 * 8)
+    odometry = header + bytes(3) + b"\x05\0\0\0base\0" + bytes(3) + pose + bytes((6 + 36) * 8)
+    return [bytes([which]) + _CDR + content for which, content in enumerate((*small, odometry))]
+
+
 def _image() -> Iterable[bytes]:
     picture = np.random.default_rng(1).integers(0, 255, (_SIZE_PX[1] // 8, _SIZE_PX[0] // 8, 3), np.uint8)
     large = cv2.resize(picture, _SIZE_PX)
@@ -213,6 +239,7 @@ READERS = {
     "serial": Reader(
         _serial, (), lambda: [b"".join(fuzz_pioneer.stream(random.Random(seed)).pieces) for seed in range(8)]
     ),
+    "ros2": Reader(_ros, (codec.MalformedError,), _ros_messages),
     "jpeg": Reader(lambda data: jpeg.decode(data, *_SIZE_PX), (jpeg.JpegError,), _image),
     "policy": Reader(lambda data: PolicyTable.from_bytes(sealed(data)), (ValueError,), _policies),
     "snapshot": Reader(_snapshot, (ValueError,), _snapshots),
