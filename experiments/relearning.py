@@ -109,6 +109,9 @@ def check_snapshots(session: HandedOver, learned: Learned) -> SnapshotCheck:
         return SnapshotCheck(None, 0, "no snapshot of the live learner to compare with")
     again = dict(learned.snapshots)
     for number, (version, digest) in enumerate(live, start=1):
+        if session.missing and version > max(again, default=0):
+            words = f"{number - 1} of {len(live)} snapshots: same hash; the next one's lessons are torn off"
+            return SnapshotCheck(number > 1 or None, number - 1, words)
         if again.get(version) != digest:
             words = f"snapshot {number} of {len(live)}: another hash than live, at policy version {version}"
             if session.order == JOURNAL_ORDER:

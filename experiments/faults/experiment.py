@@ -23,8 +23,8 @@ from experiments.form import Form
 from experiments.watched import Watched
 
 NAME = "faults"
-SEEDS = 20
-"""Of six injections into processes each, and of 24 into folds."""
+SEEDS = 25
+"""Of six injections into processes each, and of 24 into folds. Each death that ends a session is tried once."""
 _STARTS = 3
 SHELLS = ("live", "in-process")
 FORM = Form(

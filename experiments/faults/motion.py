@@ -26,6 +26,8 @@ class Robot:
     """Without a command for so long it brakes by itself."""
     acceleration_mps2: float
     angular_acceleration_radps2: float
+    catch_up_s: float = 2.0
+    """A simulated world that was stopped for longer does not catch up: its robot stood as still as its clock."""
 
     def valid_ns(self, told: Told, *, deaf: bool) -> int:
         """When a command to move must have ended; `deaf`: base is out of action, and the watchdog alone counts."""
@@ -52,7 +54,7 @@ def _late_ns(robot: Robot, line: Timeline, truth: Moved, *, deaf: bool) -> float
     if not told:
         return 0.0
     valid = max((robot.valid_ns(command, deaf=deaf), command) for command in told[-8:])
-    over_ns = truth.at_ns - valid[0]
+    over_ns = truth.at_ns - valid[0] - _stood_ns(robot, line, valid[0], truth.at_ns)
     if over_ns <= 0:
         return 0.0
     before = line.truths[max(0, bisect_right(line.truths, valid[0], key=lambda one: one.at_ns) - 1)]
@@ -66,6 +68,13 @@ def _late_ns(robot: Robot, line: Timeline, truth: Moved, *, deaf: bool) -> float
         if now
     ]
     return over_ns - min(braked_s) * NS
+
+
+def _stood_ns(robot: Robot, line: Timeline, since_ns: int, until_ns: int) -> int:
+    """For how long the world was stopped."""
+    times = [truth.at_ns for truth in line.truths if since_ns - NS <= truth.at_ns <= until_ns]
+    longest_ns = robot.catch_up_s * NS
+    return sum(now_ns - max(was_ns, since_ns) for was_ns, now_ns in pairwise(times) if now_ns - was_ns > longest_ns)
 
 
 def _braked_s(told: float, was: float, now: float, since_s: float, rate: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from components.base.ports import Params as Base
@@ -69,12 +70,18 @@ class Session:
         if incident.injection.victim == "base":
             return None
         stale = stale_s(self.robot, self.line, incident.at_ns, incident.next_ns)
-        return None if stale is None else (WORD, stale <= 0.0, stale, "" if stale <= 0.0 else f"{stale:.3f} s too long")
+        return None if stale is None else (WORD, stale <= 0.0, stale, "" if stale <= 0.0 else self._halted(incident))
 
     def _fresh(self, incident: Incident) -> Found:
         deaf = incident.injection.victim == "base"
         late = late_s(self.robot, self.line, incident.at_ns, incident.next_ns, deaf=deaf)
-        return FRESH, late <= STEP_S, late, "" if late <= STEP_S else f"braked {late:.3f} s too late"
+        return FRESH, late <= STEP_S, late, "" if late <= STEP_S else self._halted(incident)
+
+    def _halted(self, incident: Incident) -> str:
+        """For how long base, which ticks every 20 ms, had no processor: on a busy machine that explains it."""
+        during = [at_ns for at_ns in self.line.ticks_ns if incident.at_ns <= at_ns < incident.next_ns]
+        longest_s = max((after - before for before, after in pairwise(during)), default=0) / NS
+        return f"base did not run for {longest_s:.3f} s"
 
     def _reason(self, incident: Incident) -> Found:
         happened, done = self.happened, incident.injection

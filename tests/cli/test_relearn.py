@@ -1,6 +1,7 @@
 """Learning again from a recording: the live tables to the bit, other parameters, a policy that runs."""
 
 import json
+import re
 
 import pytest
 
@@ -78,7 +79,7 @@ def forged(session, tmp_path_factory):
 def test_a_wrong_table_in_the_file_is_noticed(forged):
     code, output = berth(relearn, forged, "--no-comparison")
     assert code == 1
-    assert "snapshot 1 of 1: another hash than live" in output
+    assert re.search(r"snapshot 1 of \d: another hash than live", output)
 
 
 def test_of_several_sessions_each_is_checked_by_itself(session, stripped, forged):
@@ -108,10 +109,13 @@ def test_a_torn_session_is_learned_from_up_to_its_tear_and_said_to_be_torn(sessi
     code, output = berth(relearn, torn, "--no-comparison")
     assert code == 3
     assert "not all of it is there: byte " in output
+    assert "snapshots: same hash; the next one's lessons are torn off" in output
 
 
 def test_a_learner_that_was_started_again_is_checked_run_by_run(session, forged):
-    for file, same, words in ((session, True, "its outputs are the same"), (forged, False, "1 of its outputs differ")):
+    count = len(live_digests(session))
+    forgery = f"{count} of its outputs differ"
+    for file, same, words in ((session, True, "its outputs are the same"), (forged, False, forgery)):
         spec = recorded_component(Recording(file), "learner")[1]
         restarted = HandedOver(restarted=True)
         check = _check(Recording(file), spec, restarted, None)

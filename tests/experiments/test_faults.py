@@ -49,6 +49,14 @@ def test_a_base_that_was_hit_has_its_watchdog_from_its_last_word_on():
     assert late_s(ROBOT, line, 1000 * MS, 2000 * MS, deaf=False) == pytest.approx(0.039, abs=0.001)
 
 
+def test_a_world_that_was_stopped_for_long_has_not_moved_its_robot():
+    line = driven(1331)
+    later = [
+        truth._replace(at_ns=truth.at_ns + 3000 * MS) if truth.at_ns > 1200 * MS else truth for truth in line.truths
+    ]
+    assert late_s(ROBOT, Timeline(later, line.commands), 1000 * MS, 6000 * MS, deaf=False) <= 0.125
+
+
 def test_a_word_that_stands_too_long_is_told_by_bases_own_clock():
     assert stale_s(ROBOT, driven(1300, 1290), 1100 * MS, 2000 * MS) == pytest.approx(-0.01)
     assert stale_s(ROBOT, driven(1300, 1330), 1100 * MS, 2000 * MS) == pytest.approx(0.03)
