@@ -95,9 +95,9 @@ class Base:
 
     def _deaf(self, time_ns: int) -> bool:
         """A world that stood still and catches up has not heard yet what came meanwhile."""
-        arrivals = [self._heard_ns, *(arrival_ns for _, arrival_ns, _ in self._pending)]
-        newest_ns = max((at_ns for at_ns in arrivals if at_ns is not None and at_ns <= time_ns), default=None)
-        return newest_ns is None or time_ns - newest_ns > self._params.watchdog_s * 1e9
+        heard = (arrival_ns for _, arrival_ns, _ in reversed(self._pending) if arrival_ns <= time_ns)
+        heard_ns = next(heard, self._heard_ns)
+        return heard_ns is None or time_ns - heard_ns > self._params.watchdog_s * 1e9
 
     def _move(self, dt_s: float) -> None:
         before_m = self.clearance_m(self.pose)
