@@ -9,7 +9,8 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from benchmarks.bad_network import AHEAD_S, BAD, CUT_S, RATE_BPS, Interruption, Story, account, told
+from benchmarks.account import account
+from benchmarks.bad_network import AHEAD_S, BAD, CUT_S, RATE_BPS, Interruption, Story, told
 from benchmarks.figure import Figure
 from benchmarks.machines import two_machines
 from benchmarks.probe import Aged, Load, Probe
@@ -68,12 +69,12 @@ def robot(directory: Path) -> list[Figure]:
         story = told(cable, directory)
     killed = _interrupted(story, f"laptop (clock {AHEAD_S:g} s ahead) killed and started again", story.killed)
     cut = _interrupted(story, f"5 % lost, 50 ms jitter, cut for {CUT_S:g} s", story.cut)
-    said = account(story)
+    said = account(story.robot, story.laptop)
     return [
         *killed,
         *cut,
-        Figure("messages that the laptop's recording lacks", said.lacking, note=f"{said.told} in its gap records"),
-        Figure("keys of which it does not say exactly what it lacks", said.wrong, at_most=0),
+        Figure("messages that the laptop's recording lacks", said.lacking, note=f"{said.sent} are in the robot's"),
+        Figure("not as its gap records say, message by message", said.wrong, "keys", at_most=0),
     ]
 
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from benchmarks.account import account
 from benchmarks.halves import APPROACH, FRAME_NS, Echo, Halves, awaits_run_file, echoed, start
 from benchmarks.watched import START_S, command_line, wait_until
 from runtime.recording import Recording
@@ -121,6 +122,13 @@ def test_what_was_lost_is_counted_and_has_gap_records(story):
     assert sum(gap.count for gap in percepts) == pytest.approx(CUT_FRAMES, abs=24)
     assert story.summaries[1]["lost"] == sum(gap.count for gap in gaps)
     assert story.laptop.whole()
+
+
+def test_what_the_laptop_s_recording_lacks_is_in_its_gap_records_message_by_message(story):
+    found = account(story.robot, story.laptop)
+    assert found.wrong == 0
+    assert found.lacking == found.told
+    assert found.sent > 0
 
 
 def test_both_halves_end_together(story):

@@ -61,3 +61,22 @@ def test_what_comes_from_elsewhere_is_known_by_who_reads_it(tmp_path):
     assert keys["world/image"] == ("foxglove.CompressedImage", "")
     assert "world/end" not in keys
     assert {key: publisher for key, _, publisher in known_keys(whole)}["world/image"] == "world"
+
+
+@pytest.mark.parametrize(("left_out", "asked"), [((), {"**"}), (("world/image",), None)])
+def test_a_key_that_is_left_out_is_not_asked_for(tmp_path, left_out, asked):
+    """So it does not cross a link."""
+    system = small_system(tmp_path)
+    subscribed, lanes = set(), set()
+    station = SimpleNamespace(
+        system=system,
+        spec=SimpleNamespace(name="witness", params={"leave_out": left_out}),
+        assignment=SimpleNamespace(origin_ns=0),
+        inbox=NeverSilent(),
+        lane=lambda box, key, schema, publisher: lanes.add(key),
+        subscribe=subscribed.add,
+    )
+    Tap(station, None)
+    others = {key for key, _, publisher in known_keys(system) if publisher != "witness"}
+    assert lanes == others - set(left_out)
+    assert subscribed == (asked or lanes)

@@ -335,6 +335,14 @@ def test_the_wired_topic_is_shown_where_two_have_one_schema(docking):
     assert len(of(docking[1], "head/pan_deg")) == 197
 
 
+def test_the_preview_is_shown_where_the_recorder_leaves_the_camera_out():
+    specs = [{"inputs": {"image": "camera/image"}}, {"params": {"leave_out": ["camera/image"]}}, {"params": 3}]
+    wiring = Wiring({"components": specs})
+    assert not wiring.takes("camera/image", "foxglove.CompressedImage")
+    assert wiring.takes("preview/image", "foxglove.CompressedImage")
+    assert Wiring({"components": specs[:1]}).takes("camera/image", "foxglove.CompressedImage")
+
+
 def test_a_rate_lets_one_pass_in_each_period_and_begins_anew_when_time_jumps_back():
     rate = Rate(10)
     assert [now for now in range(0, 40, 3) if rate.passes(now)] == [0, 12, 24, 36]
