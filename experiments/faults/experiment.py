@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from experiments.faults.rules import Session, simulated_robot
 from experiments.faults.session import RECORDING, NeverMovedError, run_session
 from experiments.faults.tampering import Tampered
 from experiments.faults.timeline import Moved, Told, timeline
-from experiments.faults.verdict import Verdict, summary, verdict_of
+from experiments.faults.verdict import SHELLS, Verdict, summary, verdict_of
 from experiments.form import Form
 from experiments.watched import Watched
 
@@ -26,7 +27,6 @@ NAME = "faults"
 SEEDS = 25
 """Of six injections into processes each, and of 24 into folds. Each death that ends a session is tried once."""
 _STARTS = 3
-SHELLS = ("live", "in-process")
 FORM = Form(
     tuple(field.name for field in fields(Verdict)),
     verdict_of,
@@ -68,15 +68,15 @@ def tamper(seed: int) -> list[Verdict]:
 
 def _shot(seed: int) -> tuple[Path, list[Verdict]]:
     """A live session, tried again where it did not begin: its folder and verdicts."""
-    for tries_left in reversed(range(_STARTS)):
-        folder = Path(tempfile.mkdtemp(prefix="berth-faults-"))
-        try:
-            return folder, judged(plan(seed), seed, folder)
-        except NeverMovedError:
-            shutil.rmtree(folder)
-            if not tries_left:
-                raise
-    raise AssertionError
+    for _ in range(_STARTS - 1):
+        with suppress(NeverMovedError):
+            return _once(seed)
+    return _once(seed)
+
+
+def _once(seed: int) -> tuple[Path, list[Verdict]]:
+    folder = Path(tempfile.mkdtemp(prefix="berth-faults-"))
+    return folder, judged(plan(seed), seed, folder)
 
 
 def judged(injections: Sequence[Injection], seed: int, folder: Path) -> list[Verdict]:

@@ -12,6 +12,7 @@ REASON = "the session goes on, or ends and names who died"
 NOBODY = "no process is left behind"
 READABLE = "the recording is readable, at most 1 s of it lost"
 TRIAL = "a learner that is started again has lost at most one trial"
+SHELLS = ("live", "in-process")
 PROMISES = (BRAKES, WORD, FRESH, REASON, NOBODY, READABLE, TRIAL)
 
 
@@ -59,14 +60,25 @@ def verdict_of(table: dict[str, object]) -> Verdict:
 
 
 def summary(rows: Sequence[Verdict]) -> Iterator[tuple[str, ...]]:
-    """A header, then for each promise how often it was tried, how often it held, and the worst that was measured."""
-    yield ("promise", "tried", "held", "worst", "live", "in-process", "not held")
+    """A header, then for each promise and shell how often it was tried, how often it held, and the worst measured."""
+    yield ("promise", "shell", "tried", "held", "worst", "not held")
     for promise in PROMISES:
-        tried = [row for row in rows if row.promise == promise]
-        broken = [row for row in tried if not row.held]
-        measured = [row.measured for row in tried if row.measured is not None]
-        worst = f"{max(measured):.3f}" if measured else ""
-        shells = (str(sum(row.shell == shell for row in tried)) for shell in ("live", "in-process"))
-        names = sorted({f"{row.fault} {row.victim}" for row in broken})
-        yield (promise, str(len(tried)), str(len(tried) - len(broken)), worst, *shells, ", ".join(names))
-    yield (f"injections: {len({(row.shell, row.seed, row.injection) for row in rows})}", *[""] * 6)
+        for shell in SHELLS:
+            tried = [row for row in rows if (row.promise, row.shell) == (promise, shell)]
+            if tried:
+                yield (promise, shell, *_cells(tried))
+    for shell in SHELLS:
+        yield (
+            "injections",
+            shell,
+            str(len({(row.seed, row.injection) for row in rows if row.shell == shell})),
+            *[""] * 3,
+        )
+
+
+def _cells(tried: Sequence[Verdict]) -> tuple[str, ...]:
+    broken = [row for row in tried if not row.held]
+    measured = [row.measured for row in tried if row.measured is not None]
+    names = sorted({f"{row.fault} {row.victim}" for row in broken})
+    worst = f"{max(measured):.3f}" if measured else ""
+    return str(len(tried)), str(len(tried) - len(broken)), worst, ", ".join(names)
