@@ -5,6 +5,7 @@ import re
 import pytest
 
 from benchmarks.__main__ import BENCHMARKS
+from experiments.registry import EXPERIMENTS
 from tests.docs.page import ROOT
 
 PAGE = (ROOT / "docs" / "promises.md").read_text(encoding="utf-8")
@@ -22,6 +23,7 @@ def test_a_promise_names_its_test_what_was_tried_and_a_command_that_runs_it(row)
     paths = re.findall(r"tests/\S+?\.py", command)
     assert all((ROOT / path).exists() for path in paths)
     benchmark = re.search(r"python -m benchmarks (\w+)", command)
-    assert paths or (benchmark and benchmark[1] in BENCHMARKS)
+    experiment = re.search(r"berth experiment (\w+)", command)
+    assert paths or (benchmark and benchmark[1] in BENCHMARKS) or (experiment and experiment[1] in EXPERIMENTS)
     for name in re.findall(r"`(\w+)(?:\.py)?`", tests):
-        assert name in BENCHMARKS or list((ROOT / "tests").rglob(f"{name}.py")), name
+        assert name in BENCHMARKS or name in EXPERIMENTS or list((ROOT / "tests").rglob(f"{name}.py")), name
