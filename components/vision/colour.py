@@ -21,13 +21,16 @@ class Thresholds:
     def __init__(self, params: Params) -> None:
         self._params = params
         self._planes = [np.empty((params.height_px, params.width_px), np.uint8) for _ in range(3)]
+        self._none = np.zeros((params.height_px, params.width_px), np.uint8)
 
     def masks(self, image: Image) -> tuple[Mask, Mask]:
-        """(object, stripe), each `[height, width]`, 255 where the colour fits, else 0."""
+        """(object, stripe), each `[height, width]`, 255 where the colour fits, else 0; no stripe is seen by lines."""
         blue, green, red = cv2.split(image, self._planes)
+        greener = _at_least(cv2.subtract(green, cv2.max(red, blue)), self._params.green_over_others)
+        if self._params.edge != "stripe":
+            return greener, self._none
         redder = _at_least(cv2.subtract(red, green), self._params.red_over_green)
         yellower = _at_least(cv2.subtract(green, blue), self._params.green_over_blue)
-        greener = _at_least(cv2.subtract(green, cv2.max(red, blue)), self._params.green_over_others)
         return greener, np.asarray(cv2.bitwise_and(redder, yellower), np.uint8)
 
 

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.vision import blob, edge, hough
+from components.vision import blob, borders, edge, hough
 from components.vision.blob import Blob
+from components.vision.borders import Box
 from components.vision.colour import Mask, Thresholds
 from components.vision.marker import Detector
 from components.vision.palette import Palette
@@ -16,6 +17,11 @@ from components.vision.params import Params
 
 STRIPES = 4
 """Patches of a learned colour that are looked at: in bright light yellow things have it too."""
+BESIDE_PX = 4.0
+"""The borders of a learned stripe are looked for within its mask's height and this."""
+HIGHEST_PX = 30.0
+"""And within this, in an image 320 wide. A stripe of 3 cm is 28 px high from 0.4 m."""
+Image = NDArray[np.uint8]
 
 
 class Spot(NamedTuple):
@@ -53,7 +59,7 @@ class Eyes:
         self._middle = 0.5 * (params.width_px - 1)
         self._half = 0.5 * (params.height_px - 1)
 
-    def look(self, image: NDArray[np.uint8]) -> Sight:
+    def look(self, image: Image) -> Sight:
         """Find object and edge. A pixel's centre has whole numbers, so the image centre lies between four of them."""
         is_object, is_table = self._colours.masks(image)
         thing, spot = self._thing(image, is_object)
@@ -62,12 +68,12 @@ class Eyes:
             return Sight(None, border and self._beside(border, spot))
         return Sight(spot, border)
 
-    def _edge(self, image: NDArray[np.uint8], is_table: Mask, thing: Blob | None, spot: Spot | None) -> Border | None:
+    def _edge(self, image: Image, is_table: Mask, thing: Blob | None, spot: Spot | None) -> Border | None:
         if self._params.edge == "hough":
             return self._hough(image, thing, spot) if thing and spot else None
         stripes = blob.patches(is_table, self._params.pool, STRIPES if self._params.table_colour else 1)
-        borders = (self._stripe(stripe, spot.u_px if spot else 0.0) for stripe in stripes)
-        border = next((border for border in borders if border is not None), None)
+        found = (self._stripe(image, stripe, spot.u_px if spot else 0.0) for stripe in stripes)
+        border = next((border for border in found if border is not None), None)
         if border is None and self._params.table_colour and thing and spot:
             return self._hough(image, thing, spot)  # overexposed, or too dark: its border is still a line
         return border
@@ -86,7 +92,7 @@ class Eyes:
             return None
         return border._replace(v_px=border.v_px - border.slope * spot.u_px)
 
-    def _thing(self, image: NDArray[np.uint8], is_object: Mask) -> tuple[Blob | None, Spot | None]:
+    def _thing(self, image: Image, is_object: Mask) -> tuple[Blob | None, Spot | None]:
         """The object: what hides the edge, and where it is."""
         if self._marker is None:
             patch = blob.largest(is_object, self._params.pool)
@@ -113,7 +119,7 @@ class Eyes:
         right, low = self._params.width_px - patch.left_px - columns, self._params.height_px - patch.top_px - rows
         return bool(min(patch.left_px, patch.top_px, right, low) <= 0)
 
-    def _stripe(self, stripe: Blob, u_px: float) -> Border | None:
+    def _stripe(self, image: Image, stripe: Blob, u_px: float) -> Border | None:
         if stripe.pixels < self._params.edge_pixels_min * self._params.scale**2:
             return None
         if max(stripe.mask.shape) < self._params.edge_length_min_px * self._params.scale:
@@ -121,12 +127,25 @@ class Eyes:
         line = edge.line(stripe, self._params.height_px, self._params.width_px)
         if line is None:
             return None
-        return self._border(line, u_px, stripe.pixels)
+        reach_px = stripe.pixels / max(stripe.mask.shape) + BESIDE_PX
+        return self._border(self._between(image, line, Box.of(stripe), reach_px), u_px, stripe.pixels)
 
-    def _hough(self, image: NDArray[np.uint8], thing: Blob, spot: Spot) -> Border | None:
+    def _hough(self, image: Image, thing: Blob, spot: Spot) -> Border | None:
         length_min_px = self._params.edge_length_min_px * self._params.scale
         found = hough.edge(image, thing, self._middle + spot.u_px, length_min_px)
-        return found and self._border(found.line, spot.u_px, len(found.pixels))
+        if found is None:
+            return None
+        line = found.line
+        if self._params.edge == "stripe":
+            line = self._between(image, line, Box.about(found.pixels), HIGHEST_PX * self._params.scale)
+        return self._border(line, spot.u_px, len(found.pixels))
+
+    def _between(self, image: Image, line: edge.Line, box: Box, reach_px: float) -> edge.Line:
+        """The line between the borders of a learned stripe; the rough one if it shows none."""
+        if not self._params.table_colour:
+            return line
+        reach = round(min(reach_px, HIGHEST_PX * self._params.scale))
+        return borders.middle(image, line, box, reach, self._params.table_colour) or line
 
     def _border(self, line: edge.Line, u_px: float, pixels: int) -> Border:
         return Border(line.slope, line.row_at(self._middle + u_px) - self._half, pixels)

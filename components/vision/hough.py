@@ -9,6 +9,7 @@ beside it (`band.py`). Without an object nothing tells the edge from others.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import cv2
@@ -80,7 +81,7 @@ def edge(image: Image, thing: Blob, column_px: float, length_min_px: float) -> E
     voted = _voted(marks, round(VOTES_SHARE * length_min_px))
     if not len(voted):
         return None
-    points = np.asarray(cv2.findNonZero(marks), np.float64).reshape(-1, 2)
+    points = np.stack(np.divmod(np.flatnonzero(np.asarray(marks) != 0), image.shape[1])[::-1]).astype(np.float64)
     foot_px = thing.top_px + len(thing.mask) - 1 - BELOW_PX
     found = _first(voted, _Marks(np.asarray(smooth, np.uint8), points), (column_px, foot_px), length_min_px)
     return found and found._replace(line=band.straightened(image, found.line, found.pixels))
@@ -107,7 +108,7 @@ class _Marks(NamedTuple):
 
     image: Image
     points: Array
-    """`[N, 2]` column, row."""
+    """`[2, N]` columns, rows."""
 
 
 def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px: float) -> Edge | None:
@@ -122,7 +123,7 @@ def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px
         if not len(candidates):
             break
         row, angle = candidates[0]
-        near = _fitted(marks.points, marks.image, Line(foot[0], row, -1.0 / np.tan(angle)))
+        near = _fitted(marks, Line(foot[0], row, -1.0 / np.tan(angle)))
         if near is None or len(near.pixels) < length_min_px:
             candidates = candidates[1:]  # one that lies across two borders; those beside it may be either
             continue
@@ -137,16 +138,16 @@ def _first(voted: Array, marks: _Marks, foot: tuple[float, float], length_min_px
     return min(long, key=lambda each: each[0])[1] if long else None
 
 
-def _fitted(points: Array, image: Image, line: Line) -> Edge | None:
+def _fitted(marks: _Marks, line: Line) -> Edge | None:
     """The line through the edge pixels near a line; None if they are none."""
     if abs(line.slope) <= 1.0:
-        fit = _through(points, image, (line.column_px, line.row_px, line.slope))
-        return fit and Edge(Line(*fit[0]), fit[1])
-    fit = _through(points[:, ::-1], image.transpose(1, 0, 2), (line.row_px, line.column_px, 1.0 / line.slope))
+        fit = _through(marks, (line.column_px, line.row_px, line.slope), steep=False)
+        return fit and Edge(Line(*fit[0]), fit[1].T)
+    fit = _through(marks, (line.row_px, line.column_px, 1.0 / line.slope), steep=True)
     if fit is None or abs(fit[0][2]) < VERTICAL:
         return None
     (row, column, slope), pixels = fit
-    return Edge(Line(column, row, 1.0 / slope), pixels[:, ::-1])
+    return Edge(Line(column, row, 1.0 / slope), pixels[::-1].T)
 
 
 def _passes(near: Edge, column_px: float, image: Image) -> bool:
@@ -160,39 +161,45 @@ def _passes(near: Edge, column_px: float, image: Image) -> bool:
 
 
 def _through(
-    points: Array, image: Image, line: tuple[float, float, float]
+    marks: _Marks, line: tuple[float, float, float], *, steep: bool
 ) -> tuple[tuple[float, float, float], Array] | None:
-    """((mean x, mean y, slope), pixels `[M, 2]`) of the regression of y on x, for a line that rises slowly."""
+    """((mean x, mean y, slope), pixels `[2, M]`) of the regression of y on x, for a line that rises slowly.
+
+    y is the row and x the column, the other way round if it is steep.
+    """
+    points = marks.points[::-1] if steep else marks.points
     x, y, slope = line
     whole = near = points
     for number, reach_px in enumerate(REACHES_PX):
         if number == 1:
             whole = near = points  # those that the first guess missed come back
-        away = np.abs(near[:, 1] - y - slope * (near[:, 0] - x)) <= reach_px * np.hypot(1.0, slope)
-        whole, near = whole[away], near[away]
-        if len(near) < 2:
+        away = np.flatnonzero(np.abs(near[1] - near[0] * slope - (y - slope * x)) <= reach_px * math.hypot(1.0, slope))
+        if len(away) < 2:
             return None
-        if number == 1:
-            near = _peaks(image, near)
-        x, y = near.mean(axis=0).tolist()
-        offsets = near[:, 0] - x
+        whole = whole.take(away, axis=1)
+        near = _peaks(marks.image, whole, steep=steep) if number == 1 else near.take(away, axis=1)
+        x, y = near.sum(axis=1) / len(away)
+        offsets = near[0] - x
         spread = float(offsets @ offsets)
         if spread == 0.0:
             return None
-        slope = float(offsets @ (near[:, 1] - y)) / spread
-    whole = whole[np.abs(near[:, 1] - y - slope * offsets) <= TIGHT_PX * np.hypot(1.0, slope)]
-    columns = np.unique(whole[:, 0])
+        slope = float(offsets @ (near[1] - y)) / spread
+    whole = whole[:, np.abs(near[1] - y - slope * offsets) <= TIGHT_PX * math.hypot(1.0, slope)]
+    columns = np.unique(whole[0])
     if len(columns) == 0 or len(columns) < DENSE_MIN * (columns[-1] - columns[0] + 1.0):
         return None
-    return (x, y, slope), whole
+    return (float(x), float(y), slope), whole
 
 
-def _peaks(image: Image, points: Array) -> Array:
-    """Edge pixels moved along y to the vertex of the parabola through the gradient there and beside it."""
-    x, y = points.T.astype(np.intp)
-    held = np.clip(y, 2, len(image) - 3)
-    rows = [image[held + step, x].astype(np.int16) for step in range(-2, 3)]
-    before, here, after = (np.abs(rows[i + 2] - rows[i]).sum(axis=1) for i in range(3))
-    bend = before - 2 * here + after
+def _peaks(image: Image, points: Array, *, steep: bool) -> Array:
+    """Edge pixels `[2, M]` (x, y) moved along y to the vertex of the parabola through the gradient there and beside."""
+    x, y = points.astype(np.intp)
+    width = image.shape[1]
+    onward, aside = (1, width) if steep else (width, 1)  # of pixels in a row, to the next y and to the next x
+    here = np.clip(y, 2, image.shape[steep] - 3) * onward + x * aside
+    colours = image.reshape(-1, 3).take(here + onward * np.arange(-2, 3)[:, None], axis=0).astype(np.int16)
+    changes = np.abs(colours[2:] - colours[:-2])
+    before, peak, after = changes[..., 0] + changes[..., 1] + changes[..., 2]
+    bend = before - 2 * peak + after
     shift = np.where(bend < 0, 0.5 * (before - after) / np.where(bend < 0, bend, 1), 0.0)
-    return np.column_stack((points[:, 0], points[:, 1] + np.clip(shift, -1.0, 1.0)))
+    return np.stack((points[0], points[1] + np.clip(shift, -1.0, 1.0)))

@@ -50,7 +50,7 @@ class Palette:
 
     def __init__(self, params: Params) -> None:
         self._thresholds = Thresholds(params)
-        self._learned = bool(params.object_colour), bool(params.table_colour)
+        self._learned = bool(params.object_colour), bool(params.table_colour) or params.edge != "stripe"
         object_cells, table_cells = look(params.object_colour, ROUND), look(params.table_colour, FLAT, BLEEDING)
         both = object_cells & table_cells
         self._kinds = np.zeros(object_cells.size, np.uint8)
