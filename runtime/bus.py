@@ -43,8 +43,9 @@ def open_router(endpoint: str, link: Link = ALONE, clock: str = "lockstep") -> z
         ConfigurationError: an endpoint is busy or malformed.
     """
     listen = [endpoint, link.listen] if link.listen else [endpoint]
+    connect = [link.connect] if link.connect else []
     try:
-        return zenoh.open(_config("router", listen, link.endpoints(clock), link.options(clock)))
+        return zenoh.open(_config("router", listen, connect, link.options(clock)))
     except zenoh.ZError as error:
         raise ConfigurationError(f"endpoint {' and '.join(listen)} must be free: {_reason(error)}") from None
 

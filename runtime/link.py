@@ -16,9 +16,6 @@ _RETRY_MS = 500
 """Longest wait between two attempts to connect."""
 _OPEN_MS = 1000
 """An attempt on a dead network is given up after this; TCP itself would wait for seconds between two tries."""
-_PRIORITIES = ("0-3", "4-7")
-"""Of each connection of a link: commands and states; events, images and the rest. One TCP connection delivers in order,
-so that a command waits for every image before it, and for the repetition of what was lost of it."""
 _BATCHES = 16
 """64 KiB each, of ordinary data: what waits while the air is busy, before it is dropped."""
 
@@ -34,12 +31,6 @@ class Link:
     guard: Mapping[str, object] = field(default_factory=dict, compare=False, repr=False)
     """Settings that let in only whom the keys and the launch file name (`runtime.guard`); empty = everybody."""
 
-    def endpoints(self, clock: str) -> list[str]:
-        """What this host's router dials: in real time one connection for what is urgent and one for the rest."""
-        if not self.connect or clock != "real":
-            return [self.connect] if self.connect else []
-        return [f"{self.connect}?prio={priorities}" for priorities in _PRIORITIES]
-
     def options(self, clock: str) -> dict[str, object]:
         """Settings of the router's session.
 
@@ -54,7 +45,6 @@ class Link:
             "transport/unicast/open_timeout": _OPEN_MS,
         }
         if clock == "real":
-            options["transport/unicast/max_links"] = len(_PRIORITIES)
             options["transport/link/tx/lease"] = _LEASE_MS
             options["transport/link/tx/queue/size/data"] = _BATCHES
             options["qos/network"] = [

@@ -5,7 +5,6 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from functools import partial
 from threading import Event, Thread
 
 import pytest
@@ -84,45 +83,3 @@ def test_in_real_time_a_dead_link_holds_no_publisher_back():
             longest_s = max(longest_s, time.monotonic() - began_s)
             Event().wait(PERIOD_S)
         assert longest_s < 0.3
-
-
-def test_one_of_two_connections_that_breaks_is_made_again_and_nothing_stops():
-    robot, laptop, listen, connect = (free_endpoint() for _ in range(4))
-    with ExitStack() as stack:
-        gate = stack.enter_context(socket.create_server(("127.0.0.1", port_of(connect))))
-        gate.settimeout(10.0)
-        stack.enter_context(open_router(robot, Link(listen), "real"))
-        stack.enter_context(open_router(laptop, Link("", connect), "real"))
-        wires = [Carried(gate, listen, stack) for _ in range(2)]
-        publisher, subscriber = (stack.enter_context(open_peer(endpoint)) for endpoint in (robot, laptop))
-        heard = subscriber.declare_subscriber(KEY, zenoh.handlers.RingChannel(4))
-        kinds = [publisher.declare_publisher(KEY, priority=p) for p in (zenoh.Priority.REAL_TIME, zenoh.Priority.DATA)]
-
-        def arrives(number: int) -> bool:
-            for kind in kinds:
-                kind.put(b"%d" % number)
-            return any(sample.payload.to_bytes() == b"%d" % number for sample in iter(heard.try_recv, None))
-
-        assert wait_for(lambda: arrives(0), 10.0)
-        for number, wire in enumerate(wires, 1):
-            wire.end()
-            Carried(gate, listen, stack)  # dialled again
-            assert wait_for(partial(arrives, number), 10.0)
-
-
-class Carried:
-    """A connection that a gate accepts, carried on to a listener."""
-
-    def __init__(self, gate: socket.socket, listen: str, stack: ExitStack) -> None:
-        self._near = stack.enter_context(gate.accept()[0])
-        self._far = stack.enter_context(socket.create_connection(("127.0.0.1", port_of(listen))))
-        self.wire = Wire(self._near, self._far)
-        self._carrier = Thread(target=self.wire.carry)
-        self._carrier.start()
-        stack.callback(self.end)
-
-    def end(self) -> None:
-        self.wire.alive = False
-        self._carrier.join()
-        for end in (self._near, self._far):
-            end.close()

@@ -1,12 +1,9 @@
 """Where a host may be reached, and what may not hold it back."""
 
 import pytest
-from zenoh import Priority
 
-from runtime.contract import Kind
 from runtime.link import Link, checked_link, is_loopback
 from runtime.params import ConfigurationError
-from runtime.qos import REAL
 
 EVERYWHERE = "tcp/0.0.0.0:7447"
 
@@ -50,12 +47,3 @@ def test_in_real_time_nothing_blocks_on_a_link_and_in_lockstep_nothing_is_droppe
     (rule,) = link.options("real")["qos/network"]
     assert rule["overwrite"] == {"congestion_control": "drop"}
     assert "qos/network" not in link.options("lockstep")
-
-
-def test_in_real_time_what_is_urgent_has_a_connection_of_its_own():
-    link = Link("", "tcp/1.2.3.4:7447")
-    assert link.endpoints("real") == ["tcp/1.2.3.4:7447?prio=0-3", "tcp/1.2.3.4:7447?prio=4-7"]
-    assert link.endpoints("lockstep") == ["tcp/1.2.3.4:7447"]
-    assert [Link(EVERYWHERE).endpoints(clock) for clock in ("real", "lockstep")] == [[], []]
-    urgent = {kind for kind, how in REAL.items() if how.priority in (Priority.REAL_TIME, Priority.INTERACTIVE_HIGH)}
-    assert urgent == {Kind.COMMAND, Kind.STATE}
