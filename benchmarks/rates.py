@@ -30,12 +30,12 @@ def paced(system: System) -> set[str]:
 
 
 def rates(messages: Iterable[Logged], topics: Collection[str]) -> Rates:
-    """Count all messages and the missing ones, and how much the rates of some topics change."""
+    """Count all messages and the missing ones, and how much the rates of some topics change, by time of capture."""
     tallies, bins = Tallies(), dict[str, Counter[int]]()
     for logged in messages:
         tallies.add(logged)
         if logged.topic in topics:
-            bins.setdefault(logged.topic, Counter())[logged.time_ns // _BIN_NS] += 1
+            bins.setdefault(logged.topic, Counter())[logged.capture_ns // _BIN_NS] += 1
     rows = tallies.topics()
     drift, topic = max(((_drift(bins[name]), name) for name in bins), default=(0.0, ""))
     return Rates(sum(row.count for row in rows), sum(row.lost for row in rows), drift, topic)
