@@ -20,7 +20,7 @@ ROWS = [
 def test_a_promise_names_its_test_what_was_tried_and_a_command_that_runs_it(row):
     _, tests, tried, held, command = row
     assert int(tried.replace(",", "")) >= int(held.replace(",", "")) > 0
-    paths = re.findall(r"tests/\S+?\.py", command)
+    paths = re.findall(r"tests/\S+?\.py|\.ci/\w+", command)
     assert all((ROOT / path).exists() for path in paths)
     benchmark = re.search(r"python -m benchmarks (\w+)", command)
     experiment = re.search(r"berth experiment (\w+)", command)
