@@ -37,7 +37,8 @@ def test_every_locked_line_is_on_the_page():
     names = {line.partition("==")[0] for line in lines if re.match(r"[\w.-]+==", line)}
     assert len(names) > 80
     assert names <= {package.name for package in PACKAGES}
-    assert all(f"| {name} |" in page() for name in names)
+    text = page()
+    assert all(f"| {name} |" in text for name in names)
 
 
 def test_what_was_read_by_a_person_is_still_locked():
