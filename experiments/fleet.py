@@ -19,7 +19,6 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from components.learner.perceptual import Planning
-from docking.angles import DEG
 from docking.grid_policy import GridPolicy
 from experiments.campaign import Job, Options
 from experiments.files import write_atomically
@@ -43,7 +42,7 @@ CASES = (
     ("structure-given", "noisy percepts"),
 )
 """Method, and the robot whose noise it has."""
-MINUTES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
+MINUTES = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 """Of all robots together."""
 SHARE = 0.9
 """Of the ceiling that is asked for."""
@@ -135,8 +134,8 @@ def some_starts() -> Starts:
 
 @cache
 def ceiling_times(robot: Robot, goal: str) -> Times:
-    """Docking times of the best controller on a robot without noise, on nodes twice as coarse as the ceiling's."""
-    problem = replace(Problem(goal=goal), angle_step_rad=1.0 * DEG, distance_step_m=0.02)
+    """Docking times of the best controller on a robot without noise, nodes in d twice as coarse as there."""
+    problem = Problem(goal=goal, distance_step_m=0.02)
     starts = some_starts()
     best = solve(replace(problem, actions=robot.actions(problem.actions)))
     return best.time_s(starts.beta_rad, starts.alpha_rad, starts.d_m)
