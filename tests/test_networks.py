@@ -25,15 +25,8 @@ def test_a_bad_link_loses_no_command_beside_pictures_that_adapt(aged):
     assert len(aged["preview"].ages_ms) > 0.7 * aged["preview"].sent
 
 
-def test_commands_overtake_the_pictures_that_wait(aged):
-    """Seen: half as old there and back as a picture one way."""
-    assert aged["all"].pictures > 0
-    assert aged["all"].percentile_ms(50) < aged["all"].picture_ms
-
-
 def test_pictures_adapt_to_the_link_so_that_commands_do_not_stand_behind_them(aged):
-    """Seen: a tenth of the age."""
+    """Seen: a tenth of the age, or all against half of the commands: the link itself is lost behind full pictures."""
     assert aged["preview"].pictures > 0
     assert aged["preview"].picture_bytes < aged["all"].picture_bytes / 2
-    assert aged["preview"].picture_ms < aged["all"].picture_ms
     assert aged["preview"].percentile_ms(50) < aged["all"].percentile_ms(50) / 2
