@@ -86,10 +86,11 @@ class Base:
         """Move from `time_ns` for `dt_s`."""
         while self._pending and self._pending[0][0] <= time_ns:
             _, self._heard_ns, self._wish = self._pending.popleft()
-        wish = REST if self._deaf(time_ns) else self._wish
-        self.v_mps = _approach(self.v_mps, wish.v_mps, self._params.acceleration_mps2 * dt_s)
+        if self._deaf(time_ns):
+            self._wish = REST  # for good: what was wished before must not come back with the next command's arrival
+        self.v_mps = _approach(self.v_mps, self._wish.v_mps, self._params.acceleration_mps2 * dt_s)
         self.omega_radps = _approach(
-            self.omega_radps, wish.omega_radps, self._params.angular_acceleration_radps2 * dt_s
+            self.omega_radps, self._wish.omega_radps, self._params.angular_acceleration_radps2 * dt_s
         )
         self._move(dt_s)
 

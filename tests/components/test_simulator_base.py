@@ -57,6 +57,14 @@ def test_a_world_that_stood_still_brakes_while_it_catches_up_with_the_commands_t
     assert max(time_s for time_s, v, *_ in trace if v > 0.0) < 56 / 64 + 0.3 + 0.1 / 0.3 + 2 * STEP_S
 
 
+def test_a_late_stop_does_not_bring_back_what_was_wished_before_it():
+    base = free()
+    run(base, 1.0, Twist(0.1, 0.2))
+    run(base, 1.0, begin_ns=64 * STEP_NS)
+    trace = run(base, 0.5, Twist(0.0, 0.0), begin_ns=128 * STEP_NS)
+    assert {(v, omega) for _, v, omega, _ in trace} == {(0.0, 0.0)}
+
+
 def test_it_brakes_by_itself_when_no_command_comes():
     base = free()
     run(base, 1.0, Twist(0.3, 0.5))
