@@ -96,13 +96,14 @@ def _messages() -> Iterable[bytes]:
 
 def _in_file(suffix: str, read: Callable[[Path], object]) -> Callable[[bytes], object]:
     @functools.cache
-    def place() -> Path:
-        home = Path("/dev/shm") if os.access("/dev/shm", os.W_OK) else None  # noqa: S108  (a name of its own in it)
-        return Path(tempfile.mkdtemp(prefix="berth-fuzz-", dir=home)) / f"case.{suffix}"
+    def place() -> tempfile.TemporaryDirectory[str]:
+        home = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # noqa: S108  (a name of its own in it)
+        return tempfile.TemporaryDirectory(prefix="berth-fuzz-", dir=home)
 
     def read_file(data: bytes) -> object:
-        place().write_bytes(data)
-        return read(place())
+        file = Path(place().name) / f"case.{suffix}"
+        file.write_bytes(data)
+        return read(file)
 
     return read_file
 
