@@ -87,4 +87,3 @@ def read(file: Path) -> Reel:
 
 def _topics(recording: Recording, *schemas: str) -> list[str]:
     return [topic.topic for topic in recording.topics() if topic.schema in schemas]
-
