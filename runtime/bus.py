@@ -6,6 +6,7 @@ two hosts do not tell one another of their peers, so nobody dials the other host
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import socket
@@ -45,9 +46,11 @@ def open_router(endpoint: str, link: Link = ALONE, clock: str = "lockstep") -> z
     listen = [endpoint, link.listen] if link.listen else [endpoint]
     connect = [link.connect] if link.connect else []
     try:
-        return zenoh.open(_config("router", listen, connect, link.options(clock)))
+        session = zenoh.open(_config("router", listen, connect, link.options(clock)))
     except zenoh.ZError as error:
         raise ConfigurationError(f"endpoint {' and '.join(listen)} must be free: {_reason(error)}") from None
+    _never_drop(session)
+    return session
 
 
 def open_peer(endpoint: str) -> zenoh.Session:
@@ -154,6 +157,15 @@ def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str,
     for key, value in options.items():
         config.insert_json5(key, json.dumps(value))
     return config
+
+
+def _never_drop(router: zenoh.Session) -> None:
+    """Let a router's session, closed or not, live as long as its process.
+
+    To drop one, zenoh 1.10.2 waits for its own thread while it holds Python's lock; that thread may be waiting for this
+    lock, to call back for another session of the process, and then both wait for ever (seen with gdb).
+    """
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(router))
 
 
 def _address(endpoint: str) -> tuple[str, int]:
