@@ -20,6 +20,8 @@ _LEAST_VARIANCE = np.square((0.05 * DEG, 0.05 * DEG, 0.002))
 """No percept is better than this, and no structure is worth more numbers for a smaller error."""
 _NO_SURPRISE = np.square((1.0 * DEG, 1.0 * DEG, 0.02))
 """Smaller errors are those of a motor that needs time to turn, not of another robot."""
+_AS_ONE = 10.0
+"""What a structure can not say errs alike in so many samples in a row: together they tell as much as one."""
 _ROUNDS = 3
 
 
@@ -60,13 +62,13 @@ def best_fit(sums: NormalEquations, structures: Sequence[Structure]) -> Fit:
 
 def fitted(sums: NormalEquations, index: int, structure: Structure, variance: Floats) -> Fit:
     """Posterior at one delay and one variance `[3]` of the measurements."""
-    precision, moment = _normal(_parts(sums, index, structure), structure, variance)
+    precision, moment = _normal(_parts(sums, index, structure), structure, _AS_ONE * variance)
     covariance = np.asarray(np.linalg.inv(precision), dtype=np.float64)
     mean = covariance @ moment
     log_evidence = 0.5 * float(
         mean @ precision @ mean
-        - (sums.square[index] / variance).sum()
-        - sums.count[index] * np.log(variance).sum()
+        - (sums.square[index] / (_AS_ONE * variance)).sum()
+        - sums.count[index] / _AS_ONE * np.log(variance).sum()
         - np.linalg.slogdet(precision)[1]
         - 2.0 * np.log(structure.spread).sum()
     )

@@ -27,6 +27,6 @@ print("over")
 """
 
 
-def test_a_router_is_forgotten_while_others_are_called_back():
+def test_a_router_is_forgotten_while_others_are_called_back() -> None:
     done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, timeout=60, check=False)
     assert done.stdout == "over\n", done.stderr
