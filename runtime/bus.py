@@ -49,7 +49,7 @@ def open_router(endpoint: str, link: Link = ALONE, clock: str = "lockstep") -> z
         session = zenoh.open(_config("router", listen, connect, link.options(clock)))
     except zenoh.ZError as error:
         raise ConfigurationError(f"endpoint {' and '.join(listen)} must be free: {_reason(error)}") from None
-    _never_drop(session)
+    never_drop(session)
     return session
 
 
@@ -159,7 +159,7 @@ def _config(mode: str, listen: list[str], connect: list[str], more: Mapping[str,
     return config
 
 
-def _never_drop(router: zenoh.Session) -> None:
+def never_drop(router: zenoh.Session) -> None:
     """Let a router's session, closed or not, live as long as its process.
 
     To drop one, zenoh 1.10.2 waits for its own thread while it holds Python's lock; that thread may be waiting for this

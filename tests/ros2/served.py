@@ -12,7 +12,7 @@ import zenoh
 
 from components.simulator.params import Params
 from docking.starts import Start
-from runtime.bus import _config, free_endpoint, open_peer
+from runtime.bus import _config, free_endpoint, never_drop, open_peer
 from tests.driven import Driven
 from tests.living import Living
 from tests.ros2.robot import Robot
@@ -35,6 +35,7 @@ class Served(Living):
 
     def plug(self):
         self._sessions.append(zenoh.open(_config("router", [self.endpoint], [], _ROUTER)))
+        never_drop(self._sessions[-1])
         if self.robot.bridge == "rmw_zenoh":
             self._sessions.append(open_peer(self.endpoint))
         self._sessions[-1].declare_subscriber(self.robot.command_key, self._hear)

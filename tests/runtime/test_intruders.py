@@ -11,7 +11,7 @@ import pytest
 import zenoh
 
 from cli.authority import Authority
-from runtime.bus import _config, free_endpoint, ready_key
+from runtime.bus import _config, free_endpoint, never_drop, ready_key
 from runtime.credentials import Credentials
 from runtime.guard import guarded
 from runtime.launch import load
@@ -72,6 +72,7 @@ def intruder(scene: Scene, guard: dict[str, object]) -> Iterator[zenoh.Session]:
     """A router of somebody's own, with no rules at all, that dials the robot."""
     options = {"connect/exit_on_failure": False, "connect/timeout_ms": 0, **guard}
     with zenoh.open(_config("router", [free_endpoint()], [scene.endpoint], options)) as session:
+        never_drop(session)
         yield session
 
 
