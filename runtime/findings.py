@@ -113,7 +113,8 @@ class Examination:
         specs = launch.get("components")
         if launch and not (isinstance(specs, list) and all(isinstance(s, dict) and s.get("name") for s in specs)):
             self._note("session", "the launch file holds no list of components with names")
-        self._inputs.update((str(spec["name"]), spec["inputs"]) for spec in specs_of(launch) if not spec.get("tap"))
+        folds = [spec for spec in specs_of(launch) if spec.get("name") and not spec.get("tap")]
+        self._inputs.update((str(spec["name"]), spec["inputs"]) for spec in folds)
 
     def _schema(self, schema: Schema) -> None:
         self._names[schema.id] = schema.name

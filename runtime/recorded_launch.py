@@ -10,9 +10,9 @@ _TABLES = ("params", "inputs", "outputs")
 
 
 def specs_of(launch: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Its components with names; `params`, `inputs` and `outputs` of each are tables, empty where the file has none."""
+    """Its components; `params`, `inputs` and `outputs` of each are tables, empty where the file has none."""
     specs = launch.get("components")
-    rows = [spec for spec in specs if isinstance(spec, dict) and spec.get("name")] if isinstance(specs, list) else []
+    rows = [spec for spec in specs if isinstance(spec, dict)] if isinstance(specs, list) else []
     return [{**row, **{key: _table(row.get(key)) for key in _TABLES}} for row in rows]
 
 
