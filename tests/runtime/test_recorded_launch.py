@@ -5,9 +5,7 @@ import pytest
 from runtime.recorded_launch import number_of, specs_of
 
 
-@pytest.mark.parametrize(
-    "components", [None, 3, "camera", {"name": "camera"}, [None, 3, "camera"], [{"run": "camera"}]]
-)
+@pytest.mark.parametrize("components", [None, 3, "camera", {"name": "camera"}, [None, 3, "camera"]])
 def test_what_is_no_list_of_tables_has_no_components(components):
     assert specs_of({"components": components}) == []
     assert number_of({"components": components}, "camera_up_m", 0.45) == 0.45
