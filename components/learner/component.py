@@ -161,7 +161,7 @@ class Learner:
         if self._version > self._kept_version:
             self._kept_version = self._version
             method = self._method
-            state = self._state(method.save(plan=False) if isinstance(method, PerceptualMethod) else method.save())
+            state = self._state(method.knowledge())
             yield Output(
                 "snapshot", Snapshot(version=self._version, table_sha256=method.digest(), state=state), capture_ns
             )

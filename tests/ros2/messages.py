@@ -128,4 +128,4 @@ HASHES = {
     BatteryState: "RIHS01_4bee5dfce981c98faa6828b868307a0a73f992ed0789f374ee96c8f840e69741",
     HazardDetectionVector: "RIHS01_90913822b0a9155a64b12352ba73b2ca9248d73874ebf7700ed277b2dca57edd",
 }
-"""As `ros2 topic info -v` shows them on a robot, the first four; the last one is only ours."""
+"""Of Twist as `ros2 topic info -v` shows it, of Odometry as other projects have it; the others are ours alone."""

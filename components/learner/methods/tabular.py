@@ -92,6 +92,10 @@ class Tabular:
         header = {"transitions": self.transitions, "dropped": self.dropped, **self._identity()}
         return pack(_KIND, header, self._arrays())
 
+    def knowledge(self) -> bytes:
+        """What a snapshot keeps: the whole state, since its plans are made at once."""
+        return self.save()
+
     def load(self, state: bytes) -> None:
         """Take over what `save` gave, of a learner of the same task and settings; on an error nothing is changed.
 
