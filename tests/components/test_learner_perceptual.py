@@ -15,7 +15,7 @@ from docking.angles import DEG
 from docking.arrays import pack, unpack
 from docking.levels import Limits
 from experiments.problem import Problem
-from experiments.robot import HEIGHT_M, Drivetrain, Robot, poses_of
+from experiments.robot import HEIGHT_M, ROBOTS, Drivetrain, Robot, poses_of
 
 PERIOD_S = 0.125
 ACTIONS = Problem().actions
@@ -63,6 +63,13 @@ def test_the_mirror_is_found_and_switched_off_where_the_wheels_are_unequal():
 
 def test_bearing_and_beta_are_found_to_share_a_function_where_nothing_is_given():
     assert learned(Robot(), "structure-learned", 4).fit.structure.name.startswith("shared")
+
+
+@pytest.mark.parametrize("stretches", [2, 3, 4])
+def test_what_no_structure_can_say_makes_a_rich_one_no_likelier(stretches):
+    """Its percepts run ahead while it turns: an error in a row, not one of each sample."""
+    fit = learned(ROBOTS["focal length x1.3"], "structure-learned", stretches).fit
+    assert fit.structure.name == "shared, mirrored"
 
 
 def test_rates_are_learned_without_a_form_within_two_percent_of_the_turn_rate():
