@@ -1,4 +1,4 @@
-"""Robots that were built alike and differ a little, and share one learner: what one has seen, all know."""
+"""Robots that were built alike and differ a little, and learn in common: what one has seen, all know."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def drawn(count: int = ROBOTS, seed: int = SEED) -> tuple[Build, ...]:
 
 
 class Fleet:
-    """Robots that train at the same time, one sample each in turn, with one learner. One robot is a fleet, too."""
+    """Robots that train at the same time, one sample each in turn, and learn in common. One robot is a fleet, too."""
 
     def __init__(self, robots: Sequence[Robot], problem: Problem, planning: Planning, seed: int) -> None:
         first = Trainee(robots[0], problem, planning, seed)
@@ -58,13 +58,14 @@ class Fleet:
         self.trainees = (first, *others)
         self.sampling_s = problem.sampling_s
 
-    def policies(self, minutes: Sequence[float]) -> Iterator[tuple[float, GridPolicy | None]]:
-        """Train; at each of these times (increasing), of all robots together, the time and what they know then."""
+    def policies(self, minutes: Sequence[float]) -> Iterator[tuple[float, list[GridPolicy | None]]]:
+        """Train; at each of these times (increasing), of all robots together, the time and what each knows then."""
         first = self.trainees[0]
         for stop in minutes:
             while first.samples * self.sampling_s * len(self.trainees) < 60.0 * stop:
                 for trainee in self.trainees:
-                    trainee.sample()
+                    if trainee.sample() and len(self.trainees) > 1:
+                        trainee.take_plan()
             for trainee in self.trainees:
-                trainee.plan()
-            yield stop, first.learner.policy()
+                trainee.finish_plan()
+            yield stop, [trainee.learner.policy() for trainee in self.trainees]

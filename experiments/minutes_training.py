@@ -112,8 +112,8 @@ class Trainee:
         problem: what is to be learned.
         planning: how.
         seed: of its starts and its noise.
-        number: of a robot that shares the learner of another.
-        learner: that it shares; None = its own.
+        number: of one of several robots.
+        alike: learner of a robot that is built alike; None = it is alone.
     """
 
     def __init__(
@@ -123,12 +123,12 @@ class Trainee:
         planning: Planning,
         seed: int,
         number: int = 0,
-        learner: Perceptual | None = None,
+        alike: Perceptual | None = None,
     ) -> None:
-        self.robot, self.problem, self.number = robot, problem, number
+        self.robot, self.problem = robot, problem
         self.rng = np.random.default_rng([seed, 6, number] if number else [seed, 6])
         self.limits = perceptual_limits(problem, robot)
-        self.learner = learner or Perceptual(planning, self.limits, problem.actions)
+        self.learner = Perceptual(planning, self.limits, problem.actions, alike)
         self.samples = self.trials = 0
         self._rules = Rules.of(Params(), seed)
         self._drivetrain = Drivetrain(robot, 1)
@@ -157,15 +157,16 @@ class Trainee:
         self.limits = perceptual_limits(self.problem, robot)
         self.learner.planner.aim(self.limits)
 
-    def sample(self) -> None:
-        """One sampling period: see, learn, act, move."""
+    def sample(self) -> bool:
+        """One sampling period: see, learn, act, move. True if a new plan has begun."""
         percept = self.robot.percepts(self._pose, self._drivetrain.motions, self.rng)[0]
         state = (float(percept[0]), float(percept[1]), float(percept[2]))
         self._change_stage(state)
         command = self._command(percept)
-        self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None), self.number)
+        begun = self.learner.feed(Seen(state, command), 2 * self.trials + (self._back is not None))
         self._pose = self._drivetrain.drive(self._pose, np.array([command]), self.problem.sampling_s)
         self.samples += 1
+        return begun
 
     def _change_stage(self, state: tuple[float, float, float]) -> None:
         late = (self.samples - self._began) * self.problem.sampling_s
@@ -192,7 +193,16 @@ class Trainee:
 
     def plan(self) -> None:
         """Learn from the newest way and plan to the end: what takes a second is over before the next trial."""
-        self.learner.close(self.number)
+        self.learner.close()
+        self.finish_plan()
+
+    def take_plan(self) -> None:
+        """Drive on by the plan that has begun, in the middle of a trial."""
+        self.finish_plan()
+        self._chooser = self._new_chooser()
+
+    def finish_plan(self) -> None:
+        """Plan to the end what has begun."""
         while self.learner.planner.busy:
             self.learner.advance(self.learner.planner.axes.d_nodes)
 

@@ -60,12 +60,13 @@ def inputs_of(sessions: Sequence[HandedOver], decode: Callable[[str, bytes], Any
 class _Unheard(Learner):
     """Nobody listens to each of its policies: making them takes as long as learning."""
 
-    def _policy(self) -> Policy:
+    def _policy(self, robot: int) -> Policy:
+        del robot
         return Policy()
 
     def policy(self) -> PolicyTable | None:
         """The newest one; None if nothing was learned."""
-        newest = super()._policy()
+        newest = super()._policy(0)
         return table_of(newest) if newest.version > 0 else None
 
 

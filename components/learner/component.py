@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,9 +30,10 @@ _KIND = "learner component"
 class Learner:
     """Joins percept, trial and applied command by capture time, cuts them into transitions, learns, publishes.
 
-    Of several robots that share it each has ports of its own; all learn the same, and all get the same policy.
-    A policy follows each frame that completed a transition which counted; a snapshot every so many trials, after the
-    (first robot's) last training trial and at the end of the run.
+    Of several robots that share it each has ports of its own; what one has seen, all know. With our own methods each
+    has a policy of its own, with the others all have the same. A policy follows each frame that completed a transition
+    which counted; a snapshot every so many trials, after the (first robot's) last training trial and at the end of the
+    run.
     """
 
     Params = ports.Params
@@ -108,7 +109,7 @@ class Learner:
     def _learn(self, frame: Frame, robot: int) -> Iterator[Output]:
         if self._improve(frame, robot):
             self._version += 1
-            yield Output("policy", self._policy(), frame.capture_ns)
+            yield from (Output(ports.POLICIES[one], self._policy(one), frame.capture_ns) for one in self._told(robot))
         if robot == 0 and self._is_due(frame.progress):
             yield from self._snapshot(frame.capture_ns)
         before_ns, self._chains[robot].newest_ns = self._pace_ns, frame.capture_ns
@@ -128,6 +129,12 @@ class Learner:
         counted = [_observed(self._method, transition) for transition in transitions]
         return any(counted)
 
+    def _told(self, robot: int) -> Sequence[int]:
+        """The robots whose policy may have changed with a frame of one."""
+        if isinstance(self._method, PerceptualMethod):
+            return (robot,)
+        return [number for number, chain in enumerate(self._chains) if number == robot or chain.newest_ns >= 0]
+
     def _is_due(self, progress: Progress) -> bool:
         """Whether enough trials have ended since the last snapshot, or the training just has."""
         if not progress.training:
@@ -138,8 +145,9 @@ class Learner:
             self._kept_trials = progress.ended
         return due
 
-    def _policy(self) -> Policy:
-        table = self._method.table(self._version)
+    def _policy(self, robot: int) -> Policy:
+        method, version = self._method, self._version
+        table = method.table(version, robot) if isinstance(method, PerceptualMethod) else method.table(version)
         return Policy(
             version=table.version,
             method=table.method,

@@ -23,7 +23,7 @@ from docking.value_iteration import LATE_S
 Floats = NDArray[np.float64]
 Actions = tuple[tuple[float, float], ...]
 LONGEST_STRETCH = 200
-"""Frames; 25 s. A longer way is learned from in parts."""
+"""Frames of all robots that are built alike; 25 s. A longer way is learned from in parts."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Seen(NamedTuple):
 
 @dataclass
 class OpenStretch:
-    """Frames in a row of one robot that are still to be learned from."""
+    """Frames in a row that are still to be learned from."""
 
     frames: list[Seen] = field(default_factory=list)
     stage: int = -1
@@ -74,45 +74,48 @@ class OpenStretch:
 
 
 class Perceptual:
-    """`feed` it every frame in order; `advance` lets it plan; `policy` is what came of it.
+    """Of one robot: `feed` it every frame in order; `advance` lets it plan; `policy` is what came of it.
 
-    Robots that are built alike may share it: what one has seen, all know. Frames of one robot in a row are one stretch;
-    it ends where the robot changes between approaching and driving back, where the object is not seen, and after
-    `LONGEST_STRETCH` frames. Then it is learned from, and a new plan begins.
+    Frames in a row are one stretch; it ends where the robot changes between approaching and driving back, where the
+    object is not seen, and after `LONGEST_STRETCH` frames. Then it is learned from, and a new plan begins.
+
+    Args:
+        alike: the learner of a robot that is built alike: what one has seen, all know.
     """
 
-    def __init__(self, planning: Planning, limits: Limits, actions: Actions) -> None:
+    def __init__(self, planning: Planning, limits: Limits, actions: Actions, alike: Perceptual | None = None) -> None:
         self.planning, self.actions = planning, actions
-        self.memory = MotionMemory(STRUCTURES[planning.method], planning.period_s, planning.memory_s, planning.surprise)
+        kin: list[MotionMemory] = [] if alike is None else alike.memory.alike
+        self.memory: MotionMemory = MotionMemory(
+            STRUCTURES[planning.method], planning.period_s, planning.memory_s, planning.surprise, kin
+        )
         axes = axes_of(limits, planning.angle_step_rad, planning.d_share * limits.gripper_m)
         back_s = planning.back_samples * planning.period_s
         self.planner = Planner(limits, axes, np.array(actions), planning.period_s, back_s)
         self.table = np.full(axes.shape, UNKNOWN, dtype=np.int8)
         self.half_seconds = np.full(axes.shape, round(2 * LATE_S), dtype=np.int8)
-        self._open: dict[int, OpenStretch] = {}
-        """By robot."""
+        self._open = OpenStretch()
         self._unsure = True
         self._fresh = False
         """Something was learned since the newest plan began."""
 
-    def feed(self, seen: Seen | None, stage: int, robot: int = 0) -> bool:
-        """One frame of a robot, None where the object was not seen; the stage names the trial, or the way back.
+    def feed(self, seen: Seen | None, stage: int) -> bool:
+        """One frame, None where the object was not seen; the stage names the trial, or the way back.
 
         Returns:
             Whether so much was learned that a new plan has begun.
         """
-        stretch = self._open.setdefault(robot, OpenStretch())
-        ends = seen is None or stage != stretch.stage or len(stretch.frames) >= LONGEST_STRETCH
-        learned = self.close(robot) if ends else False
-        stretch.stage = stage
+        longest = LONGEST_STRETCH // len(self.memory.alike)
+        ends = seen is None or stage != self._open.stage or len(self._open.frames) >= longest
+        learned = self.close() if ends else False
+        self._open.stage = stage
         if seen is not None:
-            stretch.frames.append(seen)
+            self._open.frames.append(seen)
         return learned
 
-    def close(self, robot: int = 0) -> bool:
-        """Learn from the robot's stretch that is open; True if a new plan has begun."""
-        opened = self._open.setdefault(robot, OpenStretch())
-        stretch, opened.frames = opened.frames, []
+    def close(self) -> bool:
+        """Learn from the stretch that is open; True if a new plan has begun."""
+        stretch, self._open.frames = self._open.frames, []
         states = np.array([seen.state for seen in stretch]).reshape(-1, 3)
         commands = np.array([seen.command for seen in stretch]).reshape(-1, 2)
         learned = self.memory.learn(states, commands)
@@ -176,14 +179,10 @@ class Perceptual:
         """Header and arrays for `docking.arrays.pack`; a plan that is being made is most of it, and can be left out."""
         planned = self.planner.model
         header = {
-            "open": [
-                [robot, stretch.stage, [[*seen.state, *seen.command] for seen in stretch.frames]]
-                for robot, stretch in sorted(self._open.items())
-            ],
+            "open": [self._open.stage, [[*seen.state, *seen.command] for seen in self._open.frames]],
             "unsure": self._unsure,
             "fresh": self._fresh,
-            "samples": self.memory.samples,
-            "suspicion": self.memory.suspicion,
+            **self.memory.to_plain(),
             "planner": self.planner.to_plain(),
             "planned": None if planned is None else [planned.functions, planned.delay_samples, list(planned.noise)],
         }
@@ -211,15 +210,15 @@ class Perceptual:
         if not ((table >= least) & (table < len(self.actions))).all():
             raise ValueError(f"table must be in {least}..{len(self.actions) - 1}")
         try:
-            opened = {int(robot): OpenStretch([*map(_seen, rows)], int(stage)) for robot, stage, rows in header["open"]}
-            samples, suspicion = int(header["samples"]), float(header["suspicion"])
-            unsure, fresh = bool(header["unsure"]), bool(header["fresh"])
+            stage, rows = header["open"]
+            opened = OpenStretch([*map(_seen, rows)], int(stage))
+            unsure, fresh = (bool(header[name]) for name in ("unsure", "fresh"))
             planned = None if header["planned"] is None else _model(header["planned"], arrays)
             place = {key: float(header["planner"][key]) for key in self.planner.to_plain()}
+            times_s = checked(arrays, "times_s", self.planner.times_s) if "times_s" in arrays else self.planner.times_s
+            self.memory.take_over(sums, header)
         except (KeyError, TypeError, OverflowError) as error:
             raise ValueError(f"learner state is incomplete or mistyped: {error!r}") from error
-        times_s = checked(arrays, "times_s", self.planner.times_s) if "times_s" in arrays else self.planner.times_s
-        self.memory.take_over(sums, samples, suspicion)
         self.table, self.half_seconds = table, half_seconds
         self._open, self._unsure, self._fresh = opened, unsure, fresh
         if planned is not None and place["busy"] and "times_s" not in arrays:

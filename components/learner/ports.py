@@ -53,8 +53,10 @@ INPUTS: Mapping[str, Input] = {
     name: Port(*_PARTS[part], hz=8, queue=512, optional=robot > 0) for name, (part, robot) in HEARD.items()
 }
 _FRAME = tuple(HEARD)
+POLICIES = ("policy", *(f"policy_{robot + 1}" for robot in range(1, FLEET)))
+"""Output port of each robot's."""
 OUTPUTS: Mapping[str, Port] = {
-    "policy": Port(Policy, Kind.EVENT, on=_FRAME),
+    **{name: Port(Policy, Kind.EVENT, on=_FRAME) for name in POLICIES},
     "snapshot": Port(Snapshot, Kind.EVENT, on=_FRAME),
     "pace": Port(LearnerPace, Kind.EVENT, hz=8, on=_FRAME),
 }

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,12 @@ class Structure:
     """T, [3 * 2 * functions, numbers]."""
     spread: Floats
     """Prior standard deviation of each number, [numbers]; commands are counted in m/s and rad/s."""
+
+    @cached_property
+    def commands(self) -> Floats:
+        """1 where a number belongs to speed (turn rate), else 0: [numbers, 2]."""
+        used = np.abs(self.matrix.reshape(3, 2, -1, self.matrix.shape[1])).sum(axis=(0, 2)) > 0.0
+        return np.asarray(used.T, dtype=np.float64)
 
 
 @cache

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from components.learner.component import Learner
-from components.learner.ports import FLEET, HEARD, Params
+from components.learner.ports import FLEET, HEARD, POLICIES, Params
 from docking.task import Task
 from schemas.policy_pb2 import Policy
 from tests.components.learning_world import session
@@ -32,14 +32,30 @@ def said(learner, events, port):
     return [output for event in events for output in learner.handle(event) if output.port == port]
 
 
-def learned(params, *robots) -> Policy:
-    return said(Learner(params, 0), interleaved(*robots), "policy")[-1].message
+def learned(params, *robots, told=0) -> Policy:
+    return said(Learner(params, 0), interleaved(*robots), POLICIES[told])[-1].message
 
 
 @pytest.mark.parametrize("params", [TABULAR, OURS])
 @pytest.mark.parametrize("robot", range(1, FLEET))
 def test_a_lesson_is_the_same_whichever_robot_it_comes_from(params, robot):
-    assert learned(params, heard(robot, 3)) == learned(params, heard(0, 3))
+    assert learned(params, heard(robot, 3), told=robot) == learned(params, heard(0, 3))
+
+
+def test_a_method_of_cells_gives_all_that_were_heard_of_the_same_policy():
+    learner, events = Learner(TABULAR, 0), list(interleaved(heard(0, 3), heard(2, 4)))
+    outputs = [output for event in events for output in learner.handle(event)]
+    newest = {port: [o.message for o in outputs if o.port == port] for port in POLICIES}
+    assert newest["policy_3"][-1] == newest["policy"][-1]
+    assert newest["policy_2"] == newest["policy_4"] == []
+
+
+def test_our_own_method_gives_each_its_own():
+    events = list(interleaved(heard(0, 3), heard(2, 4)))
+    learner = Learner(OURS, 0)
+    versions = [(o.port, o.message.version) for e in events for o in learner.handle(e) if o.port in POLICIES]
+    assert {port for port, _ in versions} == {"policy", "policy_3"}
+    assert len({version for _, version in versions}) == len(versions)
 
 
 def test_what_robots_see_at_the_same_time_is_counted_for_each_alone():

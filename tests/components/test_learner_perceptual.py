@@ -207,21 +207,6 @@ def test_a_frame_in_which_nothing_was_seen_ends_a_stretch():
     assert learner.memory.samples == 40
 
 
-def test_robots_that_share_a_learner_have_their_own_stretches():
-    together, apart = coarse(), coarse()
-    ways = [frames(Robot(), seed, 60) for seed in (1, 2)]
-    for k in range(60):
-        for robot, (percepts, commands) in enumerate(ways):
-            together.feed(Seen(tuple(percepts[k].tolist()), tuple(commands[k].tolist())), 0, robot)
-    for robot, (percepts, commands) in enumerate(ways):
-        together.close(robot)
-        for percept, command in zip(percepts, commands, strict=True):
-            apart.feed(Seen(tuple(percept.tolist()), tuple(command.tolist())), 0)
-        apart.close()
-    assert together.memory.samples == 120
-    assert together.digest() == apart.digest()
-
-
 def test_where_the_model_is_not_trusted_nothing_is_known():
     learner = Perceptual(
         Planning("structure-given", angle_step_rad=6 * DEG, d_share=0.5, trust_per_s=1e-9, explore=False),

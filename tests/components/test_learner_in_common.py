@@ -1,0 +1,153 @@
+"""Robots that are built alike: what one has seen the others know, at their own speed and turn rate."""
+
+import zlib
+
+import numpy as np
+import pytest
+
+from components.learner.frame import Frame, Percept, Progress
+from components.learner.methods.perceptual import PerceptualMethod
+from components.learner.motion_memory import MotionMemory
+from components.learner.perceptual import LONGEST_STRETCH, Perceptual, Planning, Seen
+from components.learner.ports import Params
+from components.learner.regression import best_fit
+from components.learner.settings import PERCEPTUAL
+from components.learner.structure import STRUCTURES
+from docking.angles import DEG
+from docking.arrays import pack, unpack
+from docking.policy import UNKNOWN
+from experiments.robot import ROBOTS, Robot
+from tests.components.test_learner_perceptual import ACTIONS, LIMITS, PERIOD_S, frames
+
+SLOW, FAST = Robot(speed_gain=0.92, turn_gain=1.06), Robot(speed_gain=1.07, turn_gain=0.94)
+STATES = np.concatenate([frames(Robot(), seed)[0] for seed in range(5)])[::7]
+
+
+def alike(count, method="structure-learned"):
+    memories = []
+    for _ in range(count):
+        MotionMemory(STRUCTURES[method], PERIOD_S, 600.0, 9.0, alike=memories)
+    return memories
+
+
+def error_radps(memory, robot):
+    """Root mean square over states and actions, of the largest of beta, alpha, ln d: against what the robot does."""
+    true = MotionMemory(STRUCTURES["structure-given"], PERIOD_S, 600.0, 9.0)
+    for seed in range(4):
+        true.learn(*frames(robot, seed))
+    commands = [np.tile(action, (len(STATES), 1)) for action in ACTIONS]
+    errors = [memory.model.rates(STATES, each) - true.model.rates(STATES, each) for each in commands]
+    return float(np.sqrt(np.mean(np.square(errors), axis=(0, 1))).max())
+
+
+@pytest.mark.parametrize("method", PERCEPTUAL)
+def test_one_form_is_learned_from_two_robots_and_each_has_its_own_speed_and_turn_rate(method):
+    slow, fast = alike(2, method)
+    for seed in range(4):
+        slow.learn(*frames(SLOW, 20 + seed))
+        fast.learn(*frames(FAST, 30 + seed))
+    assert error_radps(slow, SLOW) < 0.03 * 10 * DEG
+    assert error_radps(fast, FAST) < 0.03 * 10 * DEG
+    assert fast.fit.structure.name == STRUCTURES[method][0].name
+
+
+def test_a_robot_knows_after_seconds_what_another_has_learned_in_a_minute():
+    slow, fast = alike(2)
+    (alone,) = alike(1)
+    for seed in range(5):
+        slow.learn(*frames(SLOW, 20 + seed))
+    for memory in (fast, alone):
+        memory.learn(*frames(FAST, 3, 40))
+    assert error_radps(fast, FAST) < 0.05 * 10 * DEG
+    assert error_radps(alone, FAST) > 4.0 * error_radps(fast, FAST)
+
+
+def test_what_is_not_known_of_a_robots_own_scale_is_doubted():
+    slow, fast = alike(2, "structure-given")
+    for seed in range(4):
+        slow.learn(*frames(SLOW, 20 + seed))
+    fast.learn(*frames(Robot(noise=(2 * DEG, 1 * DEG, 0.05)), 3, 24))
+    doubt = np.sqrt(np.diag(fast.fit.covariance)) / np.abs(fast.fit.mean)
+    settled = np.sqrt(np.diag(slow.fit.covariance)) / np.abs(slow.fit.mean)
+    assert doubt[0] > 2.0 * settled[0]
+
+
+def test_one_robot_alone_is_fitted_to_its_own_sums():
+    (memory,) = alike(1)
+    memory.learn(*frames(SLOW, 1))
+    assert (memory.fit.mean == best_fit([memory.sums], memory.structures).mean).all()
+
+
+def test_a_robot_that_has_changed_learns_as_if_it_were_alone_and_the_others_go_on():
+    changing, other = alike(2)
+    (alone,) = alike(1)
+    aside = ROBOTS["camera aside"]
+    for seed in range(4):
+        other.learn(*frames(Robot(), 30 + seed))
+        for memory in (changing, alone):
+            memory.learn(*frames(Robot(), 20 + seed))
+    for seed in range(4):
+        for memory in (changing, alone):
+            memory.learn(*frames(aside, 40 + seed))
+    assert error_radps(changing, aside) == pytest.approx(error_radps(alone, aside), rel=0.05)
+    assert error_radps(other, Robot()) < 0.03 * 10 * DEG
+
+
+def coarse(kin=None):
+    return Perceptual(Planning("structure-given", angle_step_rad=6 * DEG, d_share=0.5), LIMITS, ACTIONS, kin)
+
+
+def test_those_who_share_learn_as_often_as_one_does_by_the_frames_of_all():
+    first = coarse()
+    second = coarse(first)
+    percepts, commands = frames(Robot(), 1, LONGEST_STRETCH)
+    for k in range(LONGEST_STRETCH // 2 + 1):
+        second.feed(Seen(tuple(percepts[k].tolist()), tuple(commands[k].tolist())), 0)
+    assert (first.memory.samples, second.memory.samples) == (0, LONGEST_STRETCH // 2)
+
+
+def driven(method, robots, begin=0, end=120):
+    """A frame of each in turn."""
+    ways = [frames(robot, number, 120) for number, robot in enumerate(robots)]
+    for k in range(begin, end):
+        for number, (percepts, commands) in enumerate(ways):
+            beta, alpha, log = percepts[k].tolist()
+            percept = Percept(True, 0, beta, alpha, False, float(np.arctan(np.exp(-log))))
+            progress = Progress(training=True, learning=True, began_ns=0, ended=k // 60)
+            method.feed(Frame(k * 125_000_000, percept, progress, 0, tuple(commands[k].tolist())), number)
+    return method
+
+
+def new_method():
+    params = Params(method="structure-given", goal="cell", grid_angle_rad=6 * DEG, grid_distance_share=0.9)
+    return PerceptualMethod(params.task, params, PERIOD_S)
+
+
+@pytest.mark.parametrize("cut", [30, 63, 119])
+def test_saved_and_loaded_they_go_on_as_if_nothing_had_happened(cut):
+    robots = [SLOW, FAST, Robot()]
+    whole, again = driven(new_method(), robots), new_method()
+    again.load(driven(new_method(), robots, end=cut).save())
+    driven(again, robots, begin=cut)
+    assert again.save() == whole.save()
+    assert again.digest() == whole.digest()
+
+
+def test_each_has_a_plan_of_its_own():
+    method = driven(new_method(), [SLOW, FAST])
+    slow, fast = (method.table(1, robot) for robot in (0, 1))
+    assert (slow.action != UNKNOWN).any()
+    assert slow.table_sha256 != fast.table_sha256
+    assert slow.fine.model.theta == pytest.approx(fast.fine.model.theta, rel=0.3, abs=0.05)
+    assert np.abs(slow.fine.model.theta - fast.fine.model.theta).max() > 0.05
+
+
+def test_a_state_with_a_damaged_robot_is_refused():
+    method = driven(new_method(), [SLOW, FAST])
+    before = method.save()
+
+    header, arrays = unpack(zlib.decompress(before), "perceptual learner")
+    for robots in (None, [header["robots"][0], 5], [{**header["robots"][0], "suspicion": []}]):
+        with pytest.raises(ValueError, match="learner state"):
+            method.load(zlib.compress(pack("perceptual learner", {**header, "robots": robots}, arrays)))
+    assert method.save() == before
