@@ -26,7 +26,7 @@ _NO_SURPRISE = np.square((1.0 * DEG, 1.0 * DEG, 0.02))
 """Smaller errors are those of a motor that needs time to turn, not of another robot."""
 _AS_ONE = 10.0
 """What a structure can not say errs alike in so many samples in a row: together they tell as much as one."""
-_ALIKE = 0.06
+ALIKE = 0.06
 """Prior standard deviation of a robot's scales about those of all: they differ by up to a tenth."""
 _ROUNDS = 3
 _FIRST_ROUNDS = 8
@@ -151,8 +151,8 @@ def _in_common(
 def _scale(sums: Sums, structure: Structure, mean: Floats, variance: Floats) -> Scale:
     """Posterior of one robot's, with the numbers known that all have in common."""
     two = mean[:, None] * structure.commands
-    precision = np.eye(2) * _ALIKE**-2.0 + two.T @ (sums.gram / variance[:, None, None]).sum(axis=0) @ two
-    moment = np.full(2, _ALIKE**-2.0) + (sums.moment / variance[:, None]).sum(axis=0) @ two
+    precision = np.eye(2) * ALIKE**-2.0 + two.T @ (sums.gram / variance[:, None, None]).sum(axis=0) @ two
+    moment = np.full(2, ALIKE**-2.0) + (sums.moment / variance[:, None]).sum(axis=0) @ two
     covariance = np.asarray(np.linalg.inv(precision), dtype=np.float64)
     return Scale(covariance @ moment, covariance)
 
@@ -171,14 +171,14 @@ def _own(common: Fit, scales: Sequence[Scale]) -> Fit:
     factors = common.structure.commands @ scale.mean
     two = common.mean[:, None] * common.structure.commands
     covariance = common.covariance * np.outer(factors, factors) + two @ scale.covariance @ two.T
-    log_evidence = common.log_evidence + _log_evidence(scales)
+    log_evidence = common.log_evidence + scales_evidence(scales)
     return replace(common, mean=common.mean * factors, covariance=covariance, log_evidence=log_evidence)
 
 
-def _log_evidence(scales: Sequence[Scale]) -> float:
-    """What the scales of several robots add: their prior, and how well they are known."""
-    off = sum(float(np.sum((scale.mean - 1.0) ** 2)) for scale in scales) / _ALIKE**2
-    known = sum(float(np.linalg.slogdet(scale.covariance / _ALIKE**2)[1]) for scale in scales)
+def scales_evidence(scales: Sequence[Scale]) -> float:
+    """What the scales of several robots add to the logarithm: how unlikely they were, and how well they are known."""
+    off = sum(float(np.sum((scale.mean - 1.0) ** 2)) for scale in scales) / ALIKE**2
+    known = sum(float(np.linalg.slogdet(scale.covariance / ALIKE**2)[1]) for scale in scales)
     return 0.5 * (known - off)
 
 

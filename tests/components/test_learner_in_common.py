@@ -1,6 +1,7 @@
 """Robots that are built alike: what one has seen the others know, at their own speed and turn rate."""
 
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from components.learner.methods.perceptual import PerceptualMethod
 from components.learner.motion_memory import MotionMemory
 from components.learner.perceptual import LONGEST_STRETCH, Perceptual, Planning, Seen
 from components.learner.ports import Params
-from components.learner.regression import best_fit
+from components.learner.regression import ALIKE, Scale, best_fit, scales_evidence
 from components.learner.settings import PERCEPTUAL
 from components.learner.structure import STRUCTURES
 from docking.angles import DEG
@@ -23,10 +24,10 @@ SLOW, FAST = Robot(speed_gain=0.92, turn_gain=1.06), Robot(speed_gain=1.07, turn
 STATES = np.concatenate([frames(Robot(), seed)[0] for seed in range(5)])[::7]
 
 
-def alike(count, method="structure-learned"):
+def alike(count, method="structure-learned", memory_s=600.0):
     memories = []
     for _ in range(count):
-        MotionMemory(STRUCTURES[method], PERIOD_S, 600.0, 9.0, alike=memories)
+        MotionMemory(STRUCTURES[method], PERIOD_S, memory_s, 9.0, alike=memories)
     return memories
 
 
@@ -64,12 +65,34 @@ def test_a_robot_knows_after_seconds_what_another_has_learned_in_a_minute():
 
 def test_what_is_not_known_of_a_robots_own_scale_is_doubted():
     slow, fast = alike(2, "structure-given")
+    noise = (2 * DEG, 1 * DEG, 0.05)
     for seed in range(4):
-        slow.learn(*frames(SLOW, 20 + seed))
-    fast.learn(*frames(Robot(noise=(2 * DEG, 1 * DEG, 0.05)), 3, 24))
-    doubt = np.sqrt(np.diag(fast.fit.covariance)) / np.abs(fast.fit.mean)
-    settled = np.sqrt(np.diag(slow.fit.covariance)) / np.abs(slow.fit.mean)
-    assert doubt[0] > 2.0 * settled[0]
+        slow.learn(*frames(replace(SLOW, noise=noise), 20 + seed))
+    fast.learn(*frames(replace(FAST, noise=noise), 3, 24))
+    doubt, settled = (np.sqrt(np.diag(one.fit.covariance)) / np.abs(one.fit.mean) for one in (fast, slow))
+    assert len(fast.fit.mean) == len(slow.fit.mean)
+    assert doubt[0] > 1.3 * settled[0]
+    assert doubt[0] > 0.8 * ALIKE
+
+
+@pytest.mark.parametrize(
+    ("mean", "share", "expected"),
+    [((1.0, 1.0), 1.0, 0.0), ((1.0, 1.0), 0.01, -np.log(100.0)), ((1.0 + ALIKE, 1.0 - ALIKE), 1.0, -1.0)],
+)
+def test_scales_cost_evidence_as_far_as_they_are_known_and_off(mean, share, expected):
+    scale = Scale(np.array(mean), np.eye(2) * share * ALIKE**2)
+    assert scales_evidence([scale]) == pytest.approx(expected)
+    assert scales_evidence([scale] * 3) == pytest.approx(3.0 * expected)
+
+
+def test_that_there_are_two_robots_is_less_likely_than_that_one_has_seen_all_of_it():
+    first, second = alike(2, "structure-given", 1e9)
+    (one,) = alike(1, "structure-given", 1e9)
+    for seed in range(6):
+        (first, second)[seed % 2].learn(*frames(Robot(), seed))
+        one.learn(*frames(Robot(), seed))
+    assert first.fit.mean == pytest.approx(one.fit.mean, abs=0.01)
+    assert first.fit.log_evidence < one.fit.log_evidence - 4.0
 
 
 def test_one_robot_alone_is_fitted_to_its_own_sums():
