@@ -81,7 +81,9 @@ def draw(rows: Sequence[Row], folder: Path) -> Sequence[Path]:
             for number, who in enumerate((ALONE, TOGETHER)):
                 _curve(panel, rows, f"{who}: {case}", f"C{number}")
             panel.axhline(100.0 * SHARES[0], color="k", lw=1.0, ls=":")
-            panel.set(xlabel="minutes of all robots together", ylabel="share of the ceiling, %", title=case)
+            panel.set(
+                xlabel="minutes of all robots together", ylabel="share of the ceiling, %", title=case, ylim=(0.0, 100.0)
+            )
             panel.legend()
 
     return [path, picture(folder / "fleet.png", paint, columns=max(1, len(cases(rows))))]
