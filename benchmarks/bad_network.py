@@ -1,6 +1,6 @@
 """A robot driven from a laptop while everything happens to the laptop and to the air between them.
 
-`launch/sim2.toml` on two machines, 2 Mbit/s between them, the laptop's clock ten seconds ahead. The laptop drives; its
+`launch/sim2.toml` on two machines, 2 Mbit/s between them, the laptop's clocks ten seconds ahead. The laptop drives; its
 supervisor, and the router in it, is killed and started again; the air turns bad; the link is cut for three seconds.
 What happened is read from the robot's own recording, by the robot's clock, and from the laptop's.
 """

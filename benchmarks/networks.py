@@ -67,7 +67,7 @@ def robot(directory: Path) -> list[Figure]:
     """A robot driven from a laptop; all is read from the recordings."""
     with two_machines(directory, radio=True) as cable:
         story = told(cable, directory)
-    killed = _interrupted(story, f"laptop (clock {AHEAD_S:g} s ahead) killed and started again", story.killed)
+    killed = _interrupted(story, f"laptop (clocks {AHEAD_S:g} s ahead) killed and started again", story.killed)
     cut = _interrupted(story, f"5 % lost, 50 ms jitter, cut for {CUT_S:g} s", story.cut)
     said = account(story.robot, story.laptop)
     return [

@@ -1,5 +1,7 @@
 """Bad networks: the short form of `python -m benchmarks networks`."""
 
+import sys
+
 import pytest
 
 from benchmarks.bad_network import BAD, RATE_BPS
@@ -30,3 +32,15 @@ def test_pictures_adapt_to_the_link_so_that_commands_do_not_stand_behind_them(ag
     assert aged["preview"].pictures > 0
     assert aged["preview"].picture_bytes < aged["all"].picture_bytes / 2
     assert aged["preview"].percentile_ms(50) < aged["all"].percentile_ms(50) / 2
+
+
+def test_both_clocks_of_a_machine_can_be_ahead_of_the_others(tmp_path):
+    clocks = "import time; print(time.time(), time.monotonic())"
+    with two_machines(tmp_path) as cable:
+        cable.laptop.ahead_s = 1000.0
+        words = (sys.executable, "-c", clocks)
+        (wall_s, monotonic_s), (other_s, other_monotonic_s) = (
+            map(float, machine.run(*words).communicate()[0].split()) for machine in (cable.laptop, cable.robot)
+        )
+    assert 900.0 < wall_s - other_s < 1001.0
+    assert 900.0 < monotonic_s - other_monotonic_s < 1001.0
