@@ -22,6 +22,7 @@ LEAST_SAMPLES = 16
 _USUAL = 2.0
 """A mean square error of so many times the expected one is nothing: it is the largest of three, and noise."""
 _KEPT_FITS = 32
+"""Newest of one robot with others."""
 _ROUGH, _FINE = 1.0, 0.05
 """How fast the rest wanders that is smoothed: without a model and with one."""
 

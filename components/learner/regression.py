@@ -99,25 +99,30 @@ def best_fit(robots: Sequence[NormalEquations], structures: Sequence[Structure])
     Delays are judged under the second structure, which does not mirror: one that does would take a robot that drifts to
     one side for a late one.
     """
-    commons: list[Common] = []
-    scales: Sequence[Scale] = [_ONE] * len(robots)
-    for index in range(len(DELAYS)):
-        commons.append(_in_common(robots, index, structures[1], scales, first=index == 0))
-        scales = commons[-1].scales
-    index = int(np.argmin([np.log(common.variance).sum() for common in commons]))
-    scales = commons[index].scales
-    apart = _in_common(robots, index, structures[-1], scales)
-    wholes = [_in_common(robots, index, one, scales).whole for one in structures]
-    fits = [_fitted(whole, index, one, apart.variance) for whole, one in zip(wholes, structures, strict=True)]
-    chosen = max(fits, key=lambda fit: fit.log_evidence).structure
-    common = _in_common(robots, index, chosen, scales)
-    fit = _fitted(common.whole, index, chosen, common.variance)
+    index, scales = _likeliest_delay(robots, structures[1])
+    structure = _likeliest_structure(robots, index, structures, scales)
+    common = _in_common(robots, index, structure, scales)
+    fit = _fitted(common.whole, index, structure, common.variance)
     return fit if len(robots) == 1 else _own(fit, common.scales)
 
 
-def fitted(sums: NormalEquations, index: int, structure: Structure, variance: Floats) -> Fit:
-    """Posterior of one robot at one delay and one variance `[3]` of the measurements."""
-    return _fitted(_reduced(sums, index, structure), index, structure, variance)
+def _likeliest_delay(robots: Sequence[NormalEquations], structure: Structure) -> tuple[int, Sequence[Scale]]:
+    """Its index, and the scales there. Those of one delay are where the search at the next begins."""
+    commons = [_in_common(robots, 0, structure, [_ONE] * len(robots), first=True)]
+    for index in range(1, len(DELAYS)):
+        commons.append(_in_common(robots, index, structure, commons[-1].scales))
+    index = int(np.argmin([np.log(common.variance).sum() for common in commons]))
+    return index, commons[index].scales
+
+
+def _likeliest_structure(
+    robots: Sequence[NormalEquations], index: int, structures: Sequence[Structure], scales: Sequence[Scale]
+) -> Structure:
+    """All judged by the errors that the richest leaves."""
+    commons = [_in_common(robots, index, structure, scales) for structure in structures]
+    pairs = zip(commons, structures, strict=True)
+    fits = [_fitted(common.whole, index, structure, commons[-1].variance) for common, structure in pairs]
+    return max(fits, key=lambda fit: fit.log_evidence).structure
 
 
 def surprise(fit: Fit, fresh: NormalEquations) -> float:
@@ -183,6 +188,7 @@ def scales_evidence(scales: Sequence[Scale]) -> float:
 
 
 def _fitted(sums: Sums, index: int, structure: Structure, variance: Floats) -> Fit:
+    """Posterior at one delay and one variance of the measurements."""
     precision, moment = _normal(sums, structure, _AS_ONE * variance)
     covariance = np.asarray(np.linalg.inv(precision), dtype=np.float64)
     mean = covariance @ moment
