@@ -16,11 +16,14 @@ setup: $(VENV)/lab.stamp  ## .venv with what the demo needs
 setup-view: $(VENV)/view.stamp  ## what `berth view` needs: 720 MB more
 setup-dev: $(VENV)/dev.stamp
 
+# So that a package of yours beside ours is found, too.
+BESIDE := --config-settings editable_mode=compat
+
 $(VENV)/lab.stamp: requirements/lab.lock pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements/build.lock
 	$(BIN)/python -m pip install --quiet --require-hashes -r $<
-	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation $(BESIDE) --editable .
 	touch $@
 
 $(VENV)/view.stamp: requirements/view.lock $(VENV)/lab.stamp

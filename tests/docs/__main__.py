@@ -37,6 +37,7 @@ def main() -> int:
 def follow(page: Path, clone: Path) -> bool:
     """Whether every command of a page succeeds."""
     say(f"{page.relative_to(clone)}")
+    clean(clone)
     kept = []
     with ExitStack() as waiting:
         for block in blocks(page):
@@ -47,6 +48,12 @@ def follow(page: Path, clone: Path) -> bool:
             elif block.is_run and block.mark != "setup":
                 kept.append(run(block, clone))
     return all(kept)
+
+
+def clean(clone: Path) -> None:
+    """What another page has made is gone, but for what setting up has."""
+    for words in (["checkout", "--quiet", "."], ["clean", "-fdxq", "-e", ".venv", "-e", "__pycache__"]):
+        subprocess.run(["git", *words], cwd=clone, check=True)
 
 
 def run(block: Block, clone: Path) -> bool:

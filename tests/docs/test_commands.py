@@ -3,6 +3,10 @@
 `make docs-check` follows all pages, whole, in a fresh clone.
 """
 
+import os
+import subprocess
+import sys
+
 import pytest
 
 from runtime.launch import load
@@ -58,6 +62,13 @@ def test_the_tutorial_leads_from_a_first_session_to_a_drive_with_a_policy_learne
     assert "complete" in looked
     assert "same hash" in relearned
     assert "exit_reason  finished" in drove
+
+
+def test_setting_up_lets_a_package_beside_ours_be_found():
+    """As the page on components has it; the sandbox would find it anyway."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    words = [sys.executable, "-P", "-c", "import benchmarks"]
+    subprocess.run(words, cwd="/", env=environment, check=True)
 
 
 def test_the_page_on_components_makes_one_that_keeps_the_contract_and_replays(tmp_path):
