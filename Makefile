@@ -19,7 +19,7 @@ setup-dev: $(VENV)/dev.stamp
 # So that a package of yours beside ours is found, too.
 BESIDE := --config-settings editable_mode=compat
 
-$(VENV)/lab.stamp: requirements/lab.lock pyproject.toml
+$(VENV)/lab.stamp: requirements/lab.lock pyproject.toml Makefile
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements/build.lock
 	$(BIN)/python -m pip install --quiet --require-hashes -r $<

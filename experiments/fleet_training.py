@@ -59,7 +59,10 @@ class Fleet:
         self.sampling_s = problem.sampling_s
 
     def policies(self, minutes: Sequence[float]) -> Iterator[tuple[float, list[GridPolicy | None]]]:
-        """Train; at each of these times (increasing), of all robots together, the time and what each knows then."""
+        """Train; at each of these times (increasing), of all robots together, the time and what each knows then.
+
+        Robots that share learn in the middle of a way, too, and drive on by what they have learned.
+        """
         first = self.trainees[0]
         for stop in minutes:
             while first.samples * self.sampling_s * len(self.trainees) < 60.0 * stop:

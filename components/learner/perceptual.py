@@ -146,8 +146,10 @@ class Perceptual:
 
     def advance(self, layers: int) -> bool:
         """Plan on, by at most so many layers of the grid; True when a plan has just become complete."""
-        fit = self.memory.fit
-        if fit is None or not self.planner.busy or not self.planner.advance(layers):
+        if not self.planner.busy or not self.planner.advance(layers):
+            return False
+        fit = self.memory.fit  # only now: of robots that share, every lesson of one changes the fits of all
+        if fit is None:
             return False
         planning = self.planning
         self.half_seconds[...] = np.ceil(2.0 * np.minimum(self.planner.times_s, LATE_S))

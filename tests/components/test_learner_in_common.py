@@ -156,6 +156,24 @@ def test_saved_and_loaded_they_go_on_as_if_nothing_had_happened(cut):
     assert again.digest() == whole.digest()
 
 
+def test_no_robot_is_fitted_again_while_only_others_learn(monkeypatch):
+    first = coarse()
+    second = coarse(first)
+    percepts, commands = frames(Robot(), 1, 60)
+    ways = [Seen(tuple(p.tolist()), tuple(c.tolist())) for p, c in zip(percepts, commands, strict=True)]
+    for seen in ways:
+        first.feed(seen, 0)
+    first.close()
+    first.planner.finish()
+    for seen in ways:
+        second.feed(seen, 0)
+    second.close()
+    fits = []
+    monkeypatch.setattr("components.learner.motion_memory.best_fit", lambda *_: fits.append(1))
+    first.advance(1)
+    assert fits == []
+
+
 def test_each_has_a_plan_of_its_own():
     method = driven(new_method(), [SLOW, FAST])
     slow, fast = (method.table(1, robot) for robot in (0, 1))
