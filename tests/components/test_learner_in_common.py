@@ -188,7 +188,8 @@ def test_a_state_with_a_damaged_robot_is_refused():
     before = method.save()
 
     header, arrays = unpack(zlib.decompress(before), "perceptual learner")
-    for robots in (None, [header["robots"][0], 5], [{**header["robots"][0], "suspicion": []}]):
+    first = header["robots"][0]
+    for robots in (None, [first, 5], [{**first, "suspicion": []}], [first, first], [{**first, "robot": 4}]):
         with pytest.raises(ValueError, match="learner state"):
             method.load(zlib.compress(pack("perceptual learner", {**header, "robots": robots}, arrays)))
     assert method.save() == before

@@ -16,6 +16,7 @@ from components.learner.frame import Frame
 from components.learner.perception import limits_of
 from components.learner.perceptual import Perceptual, Planning, Seen
 from components.learner.planner import Planner
+from components.learner.ports import FLEET
 from components.learner.settings import Settings
 from docking.arrays import LARGEST_BYTES, pack, unpack
 from docking.cells import Grid
@@ -153,6 +154,8 @@ class PerceptualMethod:
         try:
             for one in header["robots"]:
                 number, speeds = int(one["robot"]), [*map(float, one["speeds_mps"])]
+                if number in robots or number not in range(FLEET):
+                    raise ValueError(f"learner state: robots must differ and be of 0..{FLEET - 1}; got {number}")
                 learner = self._new_learner(robots)
                 own = {name: array for name, array in arrays.items() if name.startswith(f"{number}/")}
                 learner.from_plain(one, {name.partition("/")[2]: array for name, array in own.items()})
