@@ -128,8 +128,8 @@ class Perceptual:
         Returns:
             Whether one has begun.
         """
-        model = self.memory.model
-        if self.planner.busy or not self._fresh or model is None:
+        model = self.memory.model if self._fresh and not self.planner.busy else None
+        if model is None:
             return False
         self._fresh = False
         if self._is_planned(model):
